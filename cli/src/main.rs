@@ -1,0 +1,2 @@
+//! The binary `arclen`.
+fn main() {}

@@ -1,0 +1,152 @@
+//! What a user writes: residual, Jacobian, parameter derivative, and what stability means.
+
+use crate::linalg::Matrix;
+
+/// A parameter of a problem.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// Name used in tables and files.
+    pub name: &'static str,
+    /// Unit, for people; empty when dimensionless.
+    pub unit: &'static str,
+    /// A typical magnitude, positive; difference steps are relative to it.
+    pub scale: f64,
+}
+
+/// Index of a parameter in [`Problem::parameters`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub struct ParamId(pub usize);
+
+/// Why `f` has no value at a state. Plain data: returning it allocates nothing.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EvalError {
+    /// The state lies outside the domain of the model.
+    #[error("{what} (value {value:.6e} at index {at})")]
+    Inadmissible {
+        /// What is violated.
+        what: &'static str,
+        /// Where: an index whose meaning belongs to the problem (quadrature point, component).
+        at: usize,
+        /// The offending value.
+        value: f64,
+    },
+    /// An evaluation gave NaN or infinity.
+    #[error("not a finite number at index {at}")]
+    NotFinite {
+        /// Index of the offending component.
+        at: usize,
+    },
+}
+
+/// What the eigenvalues of the Jacobian say about stability.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stability {
+    /// The Jacobian is the Hessian of an energy: negative eigenvalues are unstable.
+    EnergyHessian,
+    /// The problem is `du/dt = f(u, p)`: eigenvalues with positive real part are unstable.
+    Dynamics,
+    /// The problem says nothing about stability.
+    None,
+}
+
+/// Equilibria `f(u, p) = 0` of a problem with `dim` unknowns and a few parameters.
+///
+/// Slices in, `&mut` out. Only [`Problem::new_jacobian`] allocates.
+pub trait Problem {
+    /// Storage of the Jacobian; decides the linear algebra.
+    type Jacobian: Matrix;
+
+    /// Number of unknowns.
+    fn dim(&self) -> usize;
+    /// The parameters, in the order in which `p` holds their values.
+    fn parameters(&self) -> &[Parameter];
+    /// A Jacobian with the problem's pattern, all zero.
+    fn new_jacobian(&self) -> Self::Jacobian;
+    /// `r = f(u, p)`.
+    ///
+    /// # Errors
+    /// When `f` has no value there.
+    fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError>;
+    /// `j = ∂f/∂u`.
+    ///
+    /// # Errors
+    /// When `f` has no value there.
+    fn jacobian(&self, u: &[f64], p: &[f64], j: &mut Self::Jacobian) -> Result<(), EvalError>;
+    /// `out = ∂f/∂p[which]`.
+    ///
+    /// # Errors
+    /// When `f` has no value there.
+    fn parameter_derivative(
+        &self,
+        u: &[f64],
+        p: &[f64],
+        which: ParamId,
+        out: &mut [f64],
+    ) -> Result<(), EvalError>;
+
+    /// Residual and Jacobian together, for problems in which they share work.
+    ///
+    /// # Errors
+    /// When `f` has no value there.
+    fn linearise(
+        &self,
+        u: &[f64],
+        p: &[f64],
+        r: &mut [f64],
+        j: &mut Self::Jacobian,
+    ) -> Result<(), EvalError> {
+        self.residual(u, p, r)?;
+        self.jacobian(u, p, j)
+    }
+
+    /// `y = M x`, the symmetric positive semidefinite metric in which arclength is measured:
+    /// `ds² = du·M du + dp²`. A mass matrix makes a length mean the same on every mesh.
+    fn metric(&self, x: &[f64], y: &mut [f64]) {
+        y.copy_from_slice(x);
+    }
+
+    /// What the Jacobian's eigenvalues mean.
+    fn stability(&self) -> Stability {
+        Stability::None
+    }
+
+    /// Number of negative eigenvalues that multipliers add to an energy Hessian; they are no
+    /// instabilities.
+    fn multipliers(&self) -> usize {
+        0
+    }
+
+    /// Names of the scalar functions of a state that are reported at every point and on which
+    /// events can be placed.
+    fn observables(&self) -> &[&'static str] {
+        &[]
+    }
+
+    /// `out[k]` = observable `k` at `(u, p)`.
+    ///
+    /// # Errors
+    /// When an observable has no value there.
+    fn observe(&self, u: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
+        let _ = (u, p, out);
+        Ok(())
+    }
+
+    /// Derivative of observable `k` in the direction `(du, dp)` of `(u, p[which])`; `None` (the
+    /// default) has the library take a central difference of [`Problem::observe`].
+    ///
+    /// # Errors
+    /// When the observable has no value there.
+    fn observable_slope(
+        &self,
+        k: usize,
+        u: &[f64],
+        p: &[f64],
+        which: ParamId,
+        du: &[f64],
+        dp: f64,
+    ) -> Result<Option<f64>, EvalError> {
+        let _ = (k, u, p, which, du, dp);
+        Ok(None)
+    }
+}

@@ -1,0 +1,1 @@
+//! Catalogue of problems with known answers.

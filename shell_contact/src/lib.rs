@@ -1,0 +1,1 @@
+//! A coated microbubble between two plates.
