@@ -1,13 +1,49 @@
 //! Structured linear algebra for continuation; knows no problem.
 //!
-//! A [`Matrix`] keeps its entries and its factors in storage allocated once.
+//! A [`Matrix`] keeps its entries and its factors in storage allocated once:
+//! [`SymmetricBand`] (`L D Lᵀ`, inertia, a rank-one term), [`Band`] (LU with partial pivoting) and
+//! [`Dense`] (the same, and the full spectrum). [`Bordered`] solves `[A B; Cᵀ D] [x; y] = [f; g]`
+//! with one factorisation of the core `A`, accurately also where `A` is singular, as it is at
+//! folds and branch points.
+//!
+//! Pivots below a floor are replaced by it, and the factors then are those of a matrix within the
+//! floor of the given one; borders repair that. Solutions are refined once where their residual is
+//! above rounding. Nothing is allocated after construction, but the spectra and the LU to which a
+//! symmetric band resorts when both its eliminations are unstable.
+//!
+//! # Limits
+//! Normwise accuracy: a matrix whose rows and columns differ by many orders of magnitude in ways
+//! that no diagonal scaling explains is solved to the rounding of its largest entry. A solve
+//! uses the entries for its residual: they must not change between [`Matrix::factor`] and
+//! [`Matrix::solve`].
+//!
+//! # References
+//! - W. Govaerts and J. D. Pryce, Mixed block elimination for linear systems with wider borders,
+//!   *IMA J. Numer. Anal.* 13 (1993) 161-180.
+//! - G. H. Golub and C. F. Van Loan, *Matrix Computations*, 4th ed., Johns Hopkins, 2013.
+
+mod band;
+mod bordered;
+mod dense;
+mod ldlt;
+mod symmetric_band;
+mod vector;
+
+pub use band::Band;
+pub use bordered::{Bordered, BorderedFacts};
+pub use dense::Dense;
+pub use symmetric_band::{MAX_GROWTH, SymmetricBand};
 
 /// What a factorisation learned about its matrix.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Facts {
-    /// Sign of the determinant; `None` when a pivot had to be replaced.
+    /// Sign of the determinant of the factors. Where a pivot had to be replaced
+    /// (`perturbed > 0`) it says nothing about the matrix itself, but together with Schur
+    /// complements from the same factors it gives the sign of a regular bordered determinant.
+    /// `None` if the method does not know it.
     pub det_sign: Option<i8>,
-    /// Numbers of (negative, positive) eigenvalues, for symmetric matrices.
+    /// Numbers of (negative, positive) eigenvalues of the factors, for symmetric matrices;
+    /// with the same proviso.
     pub inertia: Option<(usize, usize)>,
     /// Largest growth of an entry during elimination, relative to the largest entry.
     pub growth: f64,

@@ -1,0 +1,61 @@
+//! Band and bordered solves at the sizes of a shell: `cargo bench -p continuation --bench linalg`.
+#![allow(missing_docs, reason = "criterion's macros generate undocumented functions")]
+
+use std::hint::black_box;
+
+use continuation::linalg::{Bordered, Matrix, SymmetricBand};
+use criterion::{Criterion, criterion_group, criterion_main};
+
+const KD: usize = 7;
+
+/// A positive definite band with slowly decaying diagonals and a few negative shifts.
+fn sample(n: usize, rank_one: bool) -> SymmetricBand {
+    let mut a = SymmetricBand::new(n, KD);
+    for j in 0..n {
+        for (k, entry) in a.column_mut(j).iter_mut().enumerate() {
+            let wave = ((3 * j + 5 * k) as f64).sin();
+            *entry = if k == 0 { 6.0 + wave } else { wave / k as f64 };
+        }
+    }
+    if rank_one {
+        let v: Vec<f64> = (0..n).map(|i| (0.01 * i as f64).cos()).collect();
+        a.set_rank_one(0.3, &v);
+    }
+    a
+}
+
+fn symmetric_band(c: &mut Criterion) {
+    for n in [800, 1600] {
+        for rank_one in [false, true] {
+            let name = format!("n={n} kd={KD}{}", if rank_one { " rank-one" } else { "" });
+            let mut a = sample(n, rank_one);
+            let b: Vec<f64> = (0..n).map(|i| (0.1 * i as f64).sin()).collect();
+            let mut x = b.clone();
+            let floor = f64::EPSILON * a.norm();
+            c.bench_function(&format!("factor {name}"), |t| t.iter(|| black_box(a.factor(floor))));
+            c.bench_function(&format!("solve {name}"), |t| {
+                t.iter(|| {
+                    x.copy_from_slice(&b);
+                    a.solve(black_box(&mut x));
+                });
+            });
+            c.bench_function(&format!("mul {name}"), |t| t.iter(|| a.mul(black_box(&b), &mut x)));
+            let mut s = Bordered::new(n, 1);
+            s.column_mut(0).copy_from_slice(&b);
+            s.row_mut(0).copy_from_slice(&b);
+            s.set_corner(0, 0, 0.5);
+            c.bench_function(&format!("bordered factor {name}"), |t| {
+                t.iter(|| black_box(s.factor(&mut a)));
+            });
+            c.bench_function(&format!("bordered solve {name}"), |t| {
+                t.iter(|| {
+                    x.copy_from_slice(&b);
+                    s.solve(&mut a, black_box(&mut x), &mut [1.0]);
+                });
+            });
+        }
+    }
+}
+
+criterion_group!(benches, symmetric_band);
+criterion_main!(benches);

@@ -1,0 +1,321 @@
+//! Bordered systems by mixed block elimination.
+
+use super::vector::{ROUNDING, add_scaled, dot, dot_magnitude, max_abs, pivot_or_floor, sign};
+use super::{Facts, Matrix};
+
+/// Floor of the core's pivots relative to `|b| |c|`.
+///
+/// It only matters where the core vanishes (the scalar cusp at its fold, `A = [0]`): there it sets
+/// the size of the replaced pivot, which mixed elimination then makes irrelevant. It is far below
+/// rounding because `|b| |c|` does not scale as `A` does: a core that is small beside its borders
+/// is not singular.
+const BORDER_FLOOR: f64 = 1e-40;
+
+/// What the factorisation of a bordered matrix learned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BorderedFacts {
+    /// The factorisation of the core `A`.
+    pub core: Facts,
+    /// Schur complement of the last border, `d − cᵀA⁻¹b` for a single one; 1 without borders.
+    pub schur: f64,
+    /// Sign of the determinant of the whole bordered matrix; right also where the core is
+    /// singular. `None` if the bordered matrix is singular to rounding itself, or if the core does
+    /// not know the sign of its factors.
+    pub det_sign: Option<i8>,
+    /// Numbers of (negative, positive) eigenvalues of the whole matrix, if it is symmetric and the
+    /// core reports its own.
+    pub inertia: Option<(usize, usize)>,
+    /// Number of Schur complements that vanished to rounding and were replaced.
+    pub perturbed: usize,
+}
+
+/// Solver for `[A B; Cᵀ D] [x; y] = [f; g]` with a core `A` of dimension `n` and `m` borders.
+///
+/// Mixed block elimination (Govaerts & Pryce 1993), applied to one border after the other: one
+/// solve with `Aᵀ` and one with `A` per border to prepare, one solve with `A` per system. The
+/// error is that of a stable solver of the bordered matrix even where `A` is singular, with one
+/// border per rank defect. The method is invariant under scaling of the core and of each border.
+#[derive(Debug, Clone)]
+pub struct Bordered {
+    n: usize,
+    m: usize,
+    b: Vec<f64>,
+    c: Vec<f64>,
+    d: Vec<f64>,
+    /// Column `k`: solution of the core with the first `k` borders for column `k` of the border.
+    w: Vec<f64>,
+    /// The same for the transposed matrix and row `k`.
+    v: Vec<f64>,
+    delta: Vec<f64>,
+    delta_transposed: Vec<f64>,
+    y: Vec<f64>,
+    rhs: Vec<f64>,
+    residual: Vec<f64>,
+    trial: Vec<f64>,
+    core_norm: f64,
+}
+
+impl Bordered {
+    /// Storage for a core of dimension `n` and `m` borders, all zero.
+    pub fn new(n: usize, m: usize) -> Self {
+        Self {
+            n,
+            m,
+            b: vec![0.0; n * m],
+            c: vec![0.0; n * m],
+            d: vec![0.0; m * m],
+            w: vec![0.0; (n + m) * m],
+            v: vec![0.0; (n + m) * m],
+            delta: vec![1.0; m],
+            delta_transposed: vec![1.0; m],
+            y: vec![0.0; m],
+            rhs: vec![0.0; n + m],
+            residual: vec![0.0; n + m],
+            trial: vec![0.0; n + m],
+            core_norm: 0.0,
+        }
+    }
+
+    /// Dimension of the core and number of borders.
+    pub fn dims(&self) -> (usize, usize) {
+        (self.n, self.m)
+    }
+
+    /// Column `k` of `B`, to be filled.
+    pub fn column_mut(&mut self, k: usize) -> &mut [f64] {
+        &mut self.b[k * self.n..(k + 1) * self.n]
+    }
+
+    /// Column `k` of `C`, row `k` of the lower border, to be filled.
+    pub fn row_mut(&mut self, k: usize) -> &mut [f64] {
+        &mut self.c[k * self.n..(k + 1) * self.n]
+    }
+
+    /// Sets entry `(i, k)` of the corner `D`.
+    pub fn set_corner(&mut self, i: usize, k: usize, value: f64) {
+        self.d[i + k * self.m] = value;
+    }
+
+    /// The core's part of the solution for column `k` alone, with the first `k` borders:
+    /// `A⁻¹ b` for the first one. Valid after [`Bordered::factor`], not refined.
+    pub fn core_column_solution(&self, k: usize) -> &[f64] {
+        &self.w[k * (self.n + self.m)..][..self.n]
+    }
+
+    /// The same for the transposed matrix: `A⁻ᵀ c` for the first row.
+    pub fn core_row_solution(&self, k: usize) -> &[f64] {
+        &self.v[k * (self.n + self.m)..][..self.n]
+    }
+
+    /// Factors the core and prepares the borders. To be repeated when either changes.
+    pub fn factor<A: Matrix>(&mut self, a: &mut A) -> BorderedFacts {
+        let (n, m) = (self.n, self.m);
+        self.core_norm = a.norm();
+        let mut floor = f64::EPSILON * self.core_norm;
+        for k in 0..m {
+            let size = max_abs(self.column(k)) * max_abs(self.row(k));
+            floor = floor.max(BORDER_FLOOR * size);
+        }
+        let core = a.factor(floor);
+        let mut facts = BorderedFacts {
+            core,
+            schur: 1.0,
+            det_sign: core.det_sign,
+            inertia: core.inertia.filter(|_| self.is_symmetric()),
+            perturbed: 0,
+        };
+        let mut singular = core.perturbed > m;
+        for k in 0..m {
+            for transposed in [false, true] {
+                let mut z = std::mem::take(&mut self.trial);
+                let mut y = std::mem::take(&mut self.y);
+                z[..n].copy_from_slice(if transposed { self.row(k) } else { self.column(k) });
+                for i in 0..k {
+                    z[n + i] = self.corner(i, k, transposed);
+                }
+                self.eliminate(a, k, &mut z, &mut y, transposed);
+                let solution = if transposed { &mut self.v } else { &mut self.w };
+                solution[k * (n + m)..][..n + k].copy_from_slice(&z[..n + k]);
+                let (delta, replaced) = self.schur(k, &z, transposed);
+                if transposed {
+                    self.delta_transposed[k] = delta;
+                } else {
+                    self.delta[k] = delta;
+                    facts.perturbed += usize::from(replaced);
+                    singular |= replaced && k + 1 == m;
+                    facts.schur = delta;
+                    facts.det_sign = facts.det_sign.map(|s| s * sign(delta));
+                    facts.inertia = facts.inertia.map(|(negative, positive)| {
+                        if delta < 0.0 {
+                            (negative + 1, positive)
+                        } else {
+                            (negative, positive + 1)
+                        }
+                    });
+                }
+                self.trial = z;
+                self.y = y;
+            }
+        }
+        if singular {
+            facts.det_sign = None;
+        }
+        facts
+    }
+
+    /// Solves in place: `f` becomes `x`, `g` becomes `y`. Refined once if the residual asks for it.
+    pub fn solve<A: Matrix>(&mut self, a: &mut A, f: &mut [f64], g: &mut [f64]) {
+        self.solve_with(a, f, g, false);
+    }
+
+    /// Solves with the transposed bordered matrix, `[Aᵀ C; Bᵀ Dᵀ] [x; y] = [f; g]`.
+    pub fn solve_transpose<A: Matrix>(&mut self, a: &mut A, f: &mut [f64], g: &mut [f64]) {
+        self.solve_with(a, f, g, true);
+    }
+
+    fn column(&self, k: usize) -> &[f64] {
+        &self.b[k * self.n..(k + 1) * self.n]
+    }
+
+    fn row(&self, k: usize) -> &[f64] {
+        &self.c[k * self.n..(k + 1) * self.n]
+    }
+
+    /// Entry `(i, k)` of `D`, or of its transpose.
+    fn corner(&self, i: usize, k: usize, transposed: bool) -> f64 {
+        if transposed { self.d[k + i * self.m] } else { self.d[i + k * self.m] }
+    }
+
+    fn is_symmetric(&self) -> bool {
+        self.b == self.c
+            && (0..self.m)
+                .all(|k| (0..k).all(|i| self.corner(i, k, false) == self.corner(k, i, false)))
+    }
+
+    /// `d − cᵀz` of border `k` over the core with the first `k` borders, not smaller than rounding.
+    fn schur(&self, k: usize, z: &[f64], transposed: bool) -> (f64, bool) {
+        let row = if transposed { self.column(k) } else { self.row(k) };
+        let x = &z[..self.n];
+        let d = self.corner(k, k, transposed);
+        let mut value = d - dot(row, x);
+        let mut scale = d.abs() + dot_magnitude(row, x);
+        for i in 0..k {
+            let term = self.corner(k, i, transposed) * z[self.n + i];
+            value -= term;
+            scale += term.abs();
+        }
+        pivot_or_floor(value, if scale > 0.0 { f64::EPSILON * scale } else { 1.0 })
+    }
+
+    /// Solves with the core and the first `borders` borders; `z` holds `n + borders` unknowns.
+    fn eliminate<A: Matrix>(
+        &self,
+        a: &mut A,
+        borders: usize,
+        z: &mut [f64],
+        y: &mut [f64],
+        transposed: bool,
+    ) {
+        let (n, ld) = (self.n, self.n + self.m);
+        let (delta, delta_other, w, v) = if transposed {
+            (&self.delta_transposed, &self.delta, &self.v, &self.w)
+        } else {
+            (&self.delta, &self.delta_transposed, &self.w, &self.v)
+        };
+        let (f, g) = z.split_at_mut(n);
+        for k in (0..borders).rev() {
+            let v = &v[k * ld..][..n + k];
+            let column = if transposed { self.row(k) } else { self.column(k) };
+            y[k] = (g[k] - dot(&v[..n], f) - dot(&v[n..], &g[..k])) / delta_other[k];
+            add_scaled(f, -y[k], column);
+            for i in 0..=k {
+                g[i] -= self.corner(i, k, transposed) * y[k];
+            }
+        }
+        if transposed {
+            a.solve_transpose(f)
+        } else {
+            a.solve(f)
+        }
+        for k in 0..borders {
+            let w = &w[k * ld..][..n + k];
+            let row = if transposed { self.column(k) } else { self.row(k) };
+            let mut rest = g[k] - dot(row, f);
+            for i in 0..k {
+                rest -= self.corner(k, i, transposed) * g[i];
+            }
+            let correction = rest / delta[k];
+            add_scaled(f, -correction, &w[..n]);
+            add_scaled(&mut g[..k], -correction, &w[n..]);
+            g[k] = y[k] + correction;
+        }
+    }
+
+    /// `residual = rhs − M z`; true if both parts are rounding.
+    fn residual<A: Matrix>(
+        &self,
+        a: &A,
+        z: &[f64],
+        rhs: &[f64],
+        residual: &mut [f64],
+        transposed: bool,
+    ) -> bool {
+        let (x, y) = z.split_at(self.n);
+        let (f, g) = rhs.split_at(self.n);
+        let (r, s) = residual.split_at_mut(self.n);
+        if transposed {
+            a.mul_transpose(x, r)
+        } else {
+            a.mul(x, r)
+        }
+        for (r, f) in r.iter_mut().zip(f) {
+            *r = f - *r;
+        }
+        let mut scale = self.core_norm * max_abs(x) + max_abs(f);
+        let mut small = true;
+        for k in 0..self.m {
+            let (column, row) = if transposed {
+                (self.row(k), self.column(k))
+            } else {
+                (self.column(k), self.row(k))
+            };
+            add_scaled(r, -y[k], column);
+            scale += max_abs(column) * y[k].abs();
+            s[k] = g[k] - dot(row, x);
+            let mut scale = g[k].abs() + dot_magnitude(row, x);
+            for i in 0..self.m {
+                let term = self.corner(k, i, transposed) * y[i];
+                s[k] -= term;
+                scale += term.abs();
+            }
+            small &= s[k].abs() <= ROUNDING * scale;
+        }
+        small && max_abs(r) <= ROUNDING * scale
+    }
+
+    fn solve_with<A: Matrix>(&mut self, a: &mut A, f: &mut [f64], g: &mut [f64], transposed: bool) {
+        let n = self.n;
+        let mut rhs = std::mem::take(&mut self.rhs);
+        let mut z = std::mem::take(&mut self.trial);
+        let mut residual = std::mem::take(&mut self.residual);
+        let mut y = std::mem::take(&mut self.y);
+        rhs[..n].copy_from_slice(f);
+        rhs[n..].copy_from_slice(g);
+        z.copy_from_slice(&rhs);
+        self.eliminate(a, self.m, &mut z, &mut y, transposed);
+        if !self.residual(a, &z, &rhs, &mut residual, transposed) {
+            self.eliminate(a, self.m, &mut residual, &mut y, transposed);
+            // A correction as large as the solution, in both parts, is noise of a singular matrix.
+            let (dx, dy) = residual.split_at(n);
+            if max_abs(dx) <= 0.5 * max_abs(&z[..n]) || max_abs(dy) <= 0.5 * max_abs(&z[n..]) {
+                add_scaled(&mut z, 1.0, &residual);
+            }
+        }
+        f.copy_from_slice(&z[..n]);
+        g.copy_from_slice(&z[n..]);
+        self.rhs = rhs;
+        self.trial = z;
+        self.residual = residual;
+        self.y = y;
+    }
+}
