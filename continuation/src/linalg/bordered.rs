@@ -12,7 +12,7 @@ use super::{Facts, Matrix};
 const BORDER_FLOOR: f64 = 1e-40;
 
 /// Growth `|A| |x| / |b|` of a solution with a core and its first borders, above which that matrix
-/// is singular to working precision.
+/// is singular to working precision, the core then at least twice.
 const SINGULAR: f64 = 1e11;
 
 /// What the factorisation of a bordered matrix learned.
@@ -23,11 +23,12 @@ pub struct BorderedFacts {
     /// Schur complement of the last border, `d − cᵀA⁻¹b` for a single one; 1 without borders.
     pub schur: f64,
     /// Sign of the determinant of the whole bordered matrix; right also where the core is
-    /// singular. `None` if the bordered matrix is singular to rounding itself, or if the core does
-    /// not know the sign of its factors.
+    /// singular. `None` if the bordered matrix is singular to rounding, if the core does not know
+    /// the sign of its factors, or if the core is singular more than once: the solutions are
+    /// accurate then, but the signs of the single Schur complements are rounding.
     pub det_sign: Option<i8>,
-    /// Numbers of (negative, positive) eigenvalues of the whole matrix, if it is symmetric, the
-    /// core reports its own and is singular at most once.
+    /// Numbers of (negative, positive) eigenvalues of the whole matrix, if it is symmetric and the
+    /// core reports its own; `None` also where the sign of the determinant is unknown.
     pub inertia: Option<(usize, usize)>,
     /// Number of Schur complements that vanished to rounding and were replaced.
     pub perturbed: usize,
@@ -56,8 +57,6 @@ pub struct Bordered {
     rhs: Vec<f64>,
     residual: Vec<f64>,
     trial: Vec<f64>,
-    /// Schur complement of several borders at once.
-    block: Vec<f64>,
     core_norm: f64,
 }
 
@@ -78,7 +77,6 @@ impl Bordered {
             rhs: vec![0.0; n + m],
             residual: vec![0.0; n + m],
             trial: vec![0.0; n + m],
-            block: vec![0.0; m * m],
             core_norm: 0.0,
         }
     }
@@ -131,8 +129,7 @@ impl Bordered {
             inertia: core.inertia.filter(|_| self.is_symmetric()),
             perturbed: 0,
         };
-        let mut singular = core.perturbed > m;
-        let mut defect = 0;
+        let mut unknown = core.perturbed > m.min(1);
         for k in 0..m {
             for transposed in [false, true] {
                 let mut z = std::mem::take(&mut self.trial);
@@ -150,12 +147,10 @@ impl Bordered {
                 } else {
                     self.delta[k] = delta;
                     facts.perturbed += usize::from(replaced);
-                    singular |= replaced && k + 1 == m;
                     facts.schur = delta;
                     let growth = self.core_norm * max_abs(&z[..n]);
-                    if k > 0 && growth > SINGULAR * max_abs(self.column(k)) {
-                        defect = k + 1;
-                    }
+                    unknown |= k > 0 && growth > SINGULAR * max_abs(self.column(k));
+                    unknown |= replaced && k + 1 == m;
                     facts.inertia = facts.inertia.map(|(negative, positive)| {
                         if delta < 0.0 {
                             (negative + 1, positive)
@@ -168,52 +163,10 @@ impl Bordered {
                 self.y = y;
             }
         }
-        let mut signs = self.delta[defect..].iter().fold(1, |s, delta| s * sign(*delta));
-        if defect > 0 {
-            signs *= self.block_sign(a, defect);
-            facts.inertia = None;
-        }
-        facts.det_sign = facts.det_sign.filter(|_| !singular).map(|s| s * signs);
+        let signs = self.delta.iter().fold(1, |s, delta| s * sign(*delta));
+        facts.det_sign = facts.det_sign.filter(|_| !unknown).map(|s| s * signs);
+        facts.inertia = facts.inertia.filter(|_| !unknown);
         facts
-    }
-
-    /// Sign of `det(D − CᵀA⁻¹B)` of the first `r` borders.
-    ///
-    /// Where the core is singular `r` times, the Schur complements of single borders are ratios of
-    /// determinants that are rounding; only that of the `r` borders together means something.
-    fn block_sign<A: Matrix>(&mut self, a: &mut A, r: usize) -> i8 {
-        let (n, m) = (self.n, self.m);
-        let mut z = std::mem::take(&mut self.trial);
-        for k in 0..r {
-            z[..n].copy_from_slice(self.column(k));
-            a.solve(&mut z[..n]);
-            for i in 0..r {
-                self.block[i + k * m] = self.corner(i, k, false) - dot(self.row(i), &z[..n]);
-            }
-        }
-        self.trial = z;
-        let s = &mut self.block;
-        let mut result = 1;
-        for k in 0..r {
-            let mut p = k;
-            for i in k..r {
-                if s[i + k * m].abs() > s[p + k * m].abs() {
-                    p = i;
-                }
-            }
-            if p != k {
-                result = -result;
-                (0..r).for_each(|j| s.swap(k + j * m, p + j * m));
-            }
-            result *= sign(s[k + k * m]);
-            for i in k + 1..r {
-                let l = s[i + k * m] / s[k + k * m];
-                for j in k + 1..r {
-                    s[i + j * m] -= l * s[k + j * m];
-                }
-            }
-        }
-        result
     }
 
     /// Solves in place: `f` becomes `x`, `g` becomes `y`. Refined once if the residual asks for it.
