@@ -1,4 +1,13 @@
 //! Band and bordered solves at the sizes of a shell: `cargo bench -p continuation --bench linalg`.
+//!
+//! Half-bandwidth 7, microseconds on one core of a shared machine, without / with rank-one term:
+//!
+//! |                 | n = 800 | n = 1600 |
+//! |-----------------|---------|----------|
+//! | factor          | 17 / 35 | 40 / 53  |
+//! | solve           | 19 / 21 | 39 / 46  |
+//! | bordered factor | 60 / 89 | 129 / 190 |
+//! | bordered solve  | 27 / 32 | 60 / 60  |
 #![allow(missing_docs, reason = "criterion's macros generate undocumented functions")]
 
 use std::hint::black_box;
@@ -8,7 +17,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 
 const KD: usize = 7;
 
-/// A positive definite band with slowly decaying diagonals and a few negative shifts.
+/// A diagonally dominant band with decaying diagonals.
 fn sample(n: usize, rank_one: bool) -> SymmetricBand {
     let mut a = SymmetricBand::new(n, KD);
     for j in 0..n {

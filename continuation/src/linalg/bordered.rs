@@ -3,12 +3,12 @@
 use super::vector::{ROUNDING, add_scaled, dot, dot_magnitude, max_abs, pivot_or_floor, sign};
 use super::{Facts, Matrix};
 
-/// Floor of the core's pivots relative to `|b| |c|`.
+/// Floor of the core's pivots relative to `|b| |c|`; for a core that is exactly zero (the scalar
+/// cusp at its fold) it is `ε` instead.
 ///
-/// It only matters where the core vanishes (the scalar cusp at its fold, `A = [0]`): there it sets
-/// the size of the replaced pivot, which mixed elimination then makes irrelevant. It is far below
-/// rounding because `|b| |c|` does not scale as `A` does: a core that is small beside its borders
-/// is not singular.
+/// The replaced pivot is made irrelevant by mixed elimination. The floor is far below rounding
+/// because `|b| |c|` does not scale as `A` does, and only guards against overflow: a core that is
+/// small beside its borders is not singular.
 const BORDER_FLOOR: f64 = 1e-40;
 
 /// Growth `|A| |x| / |b|` of a solution with a core and its first borders, above which that matrix
@@ -119,7 +119,8 @@ impl Bordered {
         let mut floor = f64::EPSILON * self.core_norm;
         for k in 0..m {
             let size = max_abs(self.column(k)) * max_abs(self.row(k));
-            floor = floor.max(BORDER_FLOOR * size);
+            let part = if self.core_norm > 0.0 { BORDER_FLOOR } else { f64::EPSILON };
+            floor = floor.max(part * size);
         }
         let core = a.factor(floor);
         let mut facts = BorderedFacts {

@@ -1,0 +1,6 @@
+//! The matrices and the bordered solver against dense factorisations and eigenvalues of faer.
+#![allow(clippy::unwrap_used)]
+
+mod bordered;
+mod matrices;
+mod support;
