@@ -155,3 +155,10 @@ pub struct Branch {
     /// What it cost.
     pub statistics: Statistics,
 }
+
+impl Branch {
+    /// The special points of one kind, in order along the branch.
+    pub fn events_of<'b>(&'b self, kind: &'b EventKind) -> impl Iterator<Item = &'b Event> {
+        self.events.iter().filter(move |e| e.kind == *kind)
+    }
+}

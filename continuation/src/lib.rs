@@ -1,12 +1,24 @@
 //! Numerical continuation and bifurcation analysis of equilibria `f(u, p) = 0`.
 //!
 //! Floors, from the ground up; each uses only floors below it:
-//! [`linalg`] → [`problem`] → [`branch`].
+//! [`linalg`] → [`problem`] → [`newton`] → step (predict, correct, judge) → events (detect,
+//! locate) → [`tracer`]. A traced [`branch`] is plain data.
 
 pub mod branch;
+mod events;
 pub mod linalg;
+pub mod newton;
 pub mod problem;
+pub mod samples;
+mod settings;
+mod step;
+pub mod tracer;
 
 pub use branch::{Branch, BranchPoint, Event, EventKind, Statistics, Stop, StopReason};
+pub use events::Watch;
 pub use linalg::{Facts, Matrix};
+pub use newton::{NewtonError, NewtonReport, NewtonSettings, newton};
 pub use problem::{EvalError, ParamId, Parameter, Problem, Stability};
+pub use settings::{Settings, SettingsError};
+pub use step::Refusal;
+pub use tracer::{Progress, TraceError, Tracer};

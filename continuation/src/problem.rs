@@ -106,6 +106,14 @@ pub trait Problem {
         y.copy_from_slice(x);
     }
 
+    /// The natural magnitude of the unknowns in the problem's metric, where the problem knows it.
+    ///
+    /// `Some(1.0)` says that unknowns and parameter are comparable as they are (lengths in the
+    /// same unit, say); `None` has the tracer weigh them by their ranges along the branch.
+    fn unknown_scale(&self) -> Option<f64> {
+        None
+    }
+
     /// What the Jacobian's eigenvalues mean.
     fn stability(&self) -> Stability {
         Stability::None
@@ -148,5 +156,13 @@ pub trait Problem {
     ) -> Result<Option<f64>, EvalError> {
         let _ = (k, u, p, which, du, dp);
         Ok(None)
+    }
+}
+
+/// The first component that is not finite, as an error.
+pub(crate) fn check_finite(r: &[f64]) -> Result<(), EvalError> {
+    match r.iter().position(|x| !x.is_finite()) {
+        Some(at) => Err(EvalError::NotFinite { at }),
+        None => Ok(()),
     }
 }

@@ -1,0 +1,223 @@
+//! Which special points lie within a step, and whether the step is short enough to tell.
+
+use super::Watch;
+use super::hermite::Cubic;
+use crate::step::{Refusal, State};
+
+/// A special point somewhere within a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Candidate {
+    /// dp/ds changes sign.
+    Fold,
+    /// The orientation, or the number of unstable modes without a fold, changes.
+    BranchPoint,
+    /// Observable `observable` crosses `level`.
+    Value { observable: usize, level: f64, stop: bool },
+    /// The slope of an observable changes sign.
+    Extremum { observable: usize },
+    /// The parameter takes a value.
+    Parameter { value: f64, role: Role },
+}
+
+/// Why the parameter's value matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// The trace ends: the target.
+    Target,
+    /// The trace ends: a bound of the domain.
+    Bound,
+    /// The user wants a point there.
+    Landing,
+}
+
+impl Candidate {
+    /// The test function whose zero the special point is.
+    pub(crate) fn test(&self, x: &State, orientation: i8) -> f64 {
+        match *self {
+            Candidate::Fold => x.tp,
+            Candidate::BranchPoint => f64::from(x.orientation * orientation),
+            Candidate::Value { observable, level, .. } => x.values[observable] - level,
+            Candidate::Extremum { observable } => x.slopes[observable],
+            Candidate::Parameter { value, .. } => x.p - value,
+        }
+    }
+
+    /// Whether the trace ends at it.
+    pub(crate) fn ends_trace(&self) -> bool {
+        match self {
+            Candidate::Value { stop, .. } => *stop,
+            Candidate::Parameter { role, .. } => *role != Role::Landing,
+            _ => false,
+        }
+    }
+
+    /// Parameter values are met by solving at them; they do not disturb other events.
+    fn is_singular(&self) -> bool {
+        !matches!(self, Candidate::Parameter { .. })
+    }
+}
+
+/// The functions watched on a branch.
+#[derive(Debug, Clone)]
+pub(crate) struct Detector {
+    watched: Vec<Candidate>,
+    // largest magnitude of each observable so far: below a tiny fraction of it is noise
+    magnitude: Vec<f64>,
+    found: Vec<Candidate>,
+}
+
+/// Whether `a → b` passes zero; an exact zero belongs to the step that arrives at it.
+fn crosses(a: f64, b: f64) -> bool {
+    a * b < 0.0 || (b == 0.0 && a != 0.0)
+}
+
+/// Mismatch of a Hermite cubic above which the function is not resolved.
+const MAX_MISMATCH: f64 = 0.35;
+/// Changes smaller than this fraction of an observable's magnitude are not looked into.
+const NEGLIGIBLE: f64 = 1e-7;
+/// Rounding level of an observable relative to its magnitude.
+const NOISE: f64 = 1e-12;
+
+impl Detector {
+    /// Resolves names to indices.
+    ///
+    /// # Errors
+    /// The first unknown observable.
+    pub(crate) fn new(
+        watches: &[Watch],
+        observables: &[&'static str],
+        target: Option<f64>,
+        domain: Option<(f64, f64)>,
+    ) -> Result<Self, String> {
+        let index = |name: &String| {
+            observables.iter().position(|o| o == name).ok_or_else(|| name.clone())
+        };
+        let mut watched = Vec::new();
+        for watch in watches {
+            watched.push(match watch {
+                Watch::Value { observable, level, stop } => {
+                    Candidate::Value { observable: index(observable)?, level: *level, stop: *stop }
+                }
+                Watch::Extremum { observable } => {
+                    Candidate::Extremum { observable: index(observable)? }
+                }
+                Watch::Parameter { value } => {
+                    Candidate::Parameter { value: *value, role: Role::Landing }
+                }
+            });
+        }
+        if let Some(value) = target {
+            watched.push(Candidate::Parameter { value, role: Role::Target });
+        }
+        if let Some((lo, hi)) = domain {
+            watched.push(Candidate::Parameter { value: lo, role: Role::Bound });
+            watched.push(Candidate::Parameter { value: hi, role: Role::Bound });
+        }
+        let found = Vec::with_capacity(watched.len() + 2);
+        Ok(Detector { watched, magnitude: vec![0.0; observables.len()], found })
+    }
+
+    /// Learns the magnitudes of observables from an accepted state.
+    pub(crate) fn learn(&mut self, x: &State) {
+        for (m, v) in self.magnitude.iter_mut().zip(&x.values) {
+            if v.is_finite() {
+                *m = m.max(v.abs());
+            }
+        }
+    }
+
+    /// The special points between `a` and `b`, a scaled length `h` apart. `final_say` takes the
+    /// step as it is, where it is too short to be divided further.
+    pub(crate) fn detect(
+        &mut self,
+        a: &State,
+        b: &State,
+        h: f64,
+        final_say: bool,
+    ) -> Result<(), Refusal> {
+        self.found.clear();
+        let p = Cubic { h, g: [a.p, b.p], s: [a.tp, b.tp] };
+        let fold = crosses(a.tp, b.tp);
+        if !final_say && self.parameter_unresolved(&p) {
+            return Err(Refusal::Unresolved);
+        }
+        if fold {
+            self.found.push(Candidate::Fold);
+        }
+        if a.orientation * b.orientation < 0 {
+            self.found.push(Candidate::BranchPoint);
+        } else if let (Some(before), Some(after)) = (a.unstable, b.unstable) {
+            let change = before.abs_diff(after);
+            if change > usize::from(fold) {
+                if !final_say {
+                    return Err(Refusal::Stability);
+                }
+                self.found.push(Candidate::BranchPoint);
+            }
+        }
+        for k in 0..self.watched.len() {
+            let candidate = self.watched[k];
+            let hit = match candidate {
+                Candidate::Value { observable, level, .. } => {
+                    let cubic = self.cubic(a, b, observable, level, h);
+                    if !final_say && self.unresolved(&cubic, observable, cubic.hides_zeros()) {
+                        return Err(Refusal::Unresolved);
+                    }
+                    let noise = NOISE * self.magnitude[observable];
+                    crosses(cubic.g[0], cubic.g[1])
+                        && cubic.g[0].abs().max(cubic.g[1].abs()) > noise
+                }
+                Candidate::Extremum { observable } => {
+                    let cubic = self.cubic(a, b, observable, 0.0, h);
+                    if !final_say && self.unresolved(&cubic, observable, cubic.hides_extrema()) {
+                        return Err(Refusal::Unresolved);
+                    }
+                    let noise = 10.0 * NOISE * self.magnitude[observable];
+                    crosses(cubic.s[0], cubic.s[1])
+                        && h * cubic.s[0].abs().max(cubic.s[1].abs()) > noise
+                }
+                Candidate::Parameter { value, .. } => {
+                    crosses(a.p - value, b.p - value)
+                        // the start itself does not count
+                        || (fold && p.extrema().into_iter().flatten().any(|x| {
+                            crosses(a.p - value, p.value(x) - value)
+                        }))
+                }
+                Candidate::Fold | Candidate::BranchPoint => false,
+            };
+            if hit {
+                self.found.push(candidate);
+            }
+        }
+        if !final_say && self.found.iter().filter(|c| c.is_singular()).count() > 1 {
+            return Err(Refusal::SeveralEvents);
+        }
+        Ok(())
+    }
+
+    /// What the latest [`Detector::detect`] found.
+    pub(crate) fn found(&self) -> &[Candidate] {
+        &self.found
+    }
+
+    fn cubic(&self, a: &State, b: &State, k: usize, level: f64, h: f64) -> Cubic {
+        Cubic {
+            h,
+            g: [a.values[k] - level, b.values[k] - level],
+            s: [a.slopes[k], b.slopes[k]],
+        }
+    }
+
+    /// Two folds within one step, or a parameter that runs astray between its ends.
+    fn parameter_unresolved(&self, p: &Cubic) -> bool {
+        let negligible = 1e-6 * p.h * (p.s[0].abs() + p.s[1].abs());
+        p.hides_extrema() || (p.mismatch() > MAX_MISMATCH && (p.g[1] - p.g[0]).abs() > negligible)
+    }
+
+    fn unresolved(&self, cubic: &Cubic, k: usize, hidden: bool) -> bool {
+        let [g0, g1] = cubic.g;
+        let size = (g1 - g0).abs().max(cubic.h * cubic.s[0].abs().max(cubic.s[1].abs()));
+        let negligible = NEGLIGIBLE * self.magnitude[k].max(g0.abs()).max(g1.abs());
+        size > negligible && (hidden || cubic.mismatch() > MAX_MISMATCH)
+    }
+}

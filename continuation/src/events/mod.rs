@@ -1,0 +1,60 @@
+//! Special points: test functions, their detection in a step, and their location.
+
+mod detect;
+mod hermite;
+mod locate;
+mod root;
+
+pub(crate) use detect::{Candidate, Detector, Role};
+pub(crate) use hermite::basis;
+pub(crate) use locate::{Located, locate};
+
+use serde::{Deserialize, Serialize};
+
+/// A scalar function to watch along a branch.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Watch {
+    /// An observable takes this value.
+    Value {
+        /// Name of the observable.
+        observable: String,
+        /// The value.
+        level: f64,
+        /// Whether the trace ends there.
+        stop: bool,
+    },
+    /// An observable has a minimum or maximum along the branch.
+    Extremum {
+        /// Name of the observable.
+        observable: String,
+    },
+    /// The parameter takes this value.
+    Parameter {
+        /// The value, met exactly.
+        value: f64,
+    },
+}
+
+impl Watch {
+    /// Watches for zeros of an observable.
+    pub fn zero(observable: &str) -> Self {
+        Watch::Value { observable: observable.to_owned(), level: 0.0, stop: false }
+    }
+
+    /// Ends the trace where an observable takes this value.
+    pub fn stop_at(observable: &str, level: f64) -> Self {
+        Watch::Value { observable: observable.to_owned(), level, stop: true }
+    }
+
+    /// Watches for minima and maxima of an observable.
+    pub fn extremum(observable: &str) -> Self {
+        Watch::Extremum { observable: observable.to_owned() }
+    }
+
+    /// Has the trace land on this value of the parameter.
+    pub fn parameter(value: f64) -> Self {
+        Watch::Parameter { value }
+    }
+}

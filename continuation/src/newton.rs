@@ -1,0 +1,136 @@
+//! Newton's method for `f(u, p) = 0` at fixed parameters, damped.
+//!
+//! Damping follows the natural monotonicity test (Deuflhard, *Newton Methods for Nonlinear
+//! Problems*, 2004, §3.3): a step is accepted when the *simplified* correction that follows it,
+//! computed with the old factors, is shorter. The test is invariant under any linear
+//! transformation of `f`. Full steps near a solution converge quadratically.
+
+use crate::linalg::Matrix;
+use crate::problem::{EvalError, Problem};
+
+/// Why Newton's method gave no solution.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NewtonError {
+    /// The starting state is outside the model's domain.
+    #[error("the problem has no value at the starting state: {0}")]
+    Start(EvalError),
+    /// The Jacobian is singular.
+    #[error("the Jacobian is singular after {iterations} iterations")]
+    Singular {
+        /// Iterations done.
+        iterations: usize,
+    },
+    /// Even very short steps do not reduce the error; `cause` is set when they leave the domain.
+    #[error("no admissible step reduces the error (iteration {iterations}, correction {correction:.3e}){}",
+        .cause.map(|c| format!("; longer steps fail: {c}")).unwrap_or_default())]
+    Stuck {
+        /// Iterations done.
+        iterations: usize,
+        /// Length of the last correction in the problem's metric.
+        correction: f64,
+        /// Why longer steps were refused.
+        cause: Option<EvalError>,
+    },
+    /// The iteration limit was reached.
+    #[error("not converged after {iterations} iterations (last correction {correction:.3e})")]
+    TooMany {
+        /// Iterations done.
+        iterations: usize,
+        /// Length of the last correction in the problem's metric.
+        correction: f64,
+    },
+}
+
+/// Limits of [`newton`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NewtonSettings {
+    /// Corrections shorter than this, relative to `1 + |u|` in the problem's metric, have
+    /// converged.
+    pub tolerance: f64,
+    /// Most iterations.
+    pub max_iterations: usize,
+}
+
+impl Default for NewtonSettings {
+    fn default() -> Self {
+        NewtonSettings { tolerance: 1e-12, max_iterations: 50 }
+    }
+}
+
+/// What a successful solve cost and how close it came.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NewtonReport {
+    /// Jacobian assemblies.
+    pub iterations: usize,
+    /// Length of the last correction in the problem's metric.
+    pub correction: f64,
+}
+
+/// Solves `f(u, p) = 0` for `u`, starting from its given value.
+///
+/// # Errors
+/// When no solution was found; `u` then holds the best state reached.
+pub fn newton<P: Problem>(
+    problem: &P,
+    u: &mut [f64],
+    p: &[f64],
+    settings: &NewtonSettings,
+) -> Result<NewtonReport, NewtonError> {
+    let n = problem.dim();
+    let mut jacobian = problem.new_jacobian();
+    let (mut r, mut du) = (vec![0.0; n], vec![0.0; n]);
+    let (mut trial, mut m) = (vec![0.0; n], vec![0.0; n]);
+    let length = |x: &[f64], m: &mut [f64]| {
+        problem.metric(x, m);
+        x.iter().zip(m.iter()).map(|(a, b)| a * b).sum::<f64>().max(0.0).sqrt()
+    };
+    let mut damping = 1.0_f64;
+    for iterations in 1..=settings.max_iterations {
+        problem.linearise(u, p, &mut r, &mut jacobian).map_err(NewtonError::Start)?;
+        crate::problem::check_finite(&r).map_err(NewtonError::Start)?;
+        let floor = f64::EPSILON * jacobian.norm();
+        let facts = jacobian.factor(floor);
+        if facts.perturbed > 0 && r.iter().any(|x| *x != 0.0) {
+            return Err(NewtonError::Singular { iterations });
+        }
+        du.copy_from_slice(&r);
+        jacobian.solve(&mut du);
+        let correction = length(&du, &mut m);
+        if !correction.is_finite() {
+            return Err(NewtonError::Singular { iterations });
+        }
+        let converged = settings.tolerance * (1.0 + length(u, &mut m));
+        damping = (2.0 * damping).min(1.0);
+        let mut cause = None;
+        loop {
+            for i in 0..n {
+                trial[i] = u[i] - damping * du[i];
+            }
+            let outcome =
+                problem.residual(&trial, p, &mut r).and_then(|()| crate::problem::check_finite(&r));
+            match outcome {
+                Ok(()) => {
+                    jacobian.solve(&mut r);
+                    let next = length(&r, &mut m);
+                    if next <= (1.0 - damping / 4.0) * correction || correction <= converged {
+                        break;
+                    }
+                }
+                Err(error) => cause = Some(error),
+            }
+            damping /= 2.0;
+            if damping < 1e-6 {
+                return Err(NewtonError::Stuck { iterations, correction, cause });
+            }
+        }
+        u.copy_from_slice(&trial);
+        if correction <= converged {
+            return Ok(NewtonReport { iterations, correction });
+        }
+        if iterations == settings.max_iterations {
+            return Err(NewtonError::TooMany { iterations, correction });
+        }
+    }
+    Err(NewtonError::TooMany { iterations: settings.max_iterations, correction: f64::NAN })
+}

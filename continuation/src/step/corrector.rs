@@ -1,0 +1,349 @@
+//! Corrector: Newton's method on `f(u, p) = 0` bordered by one scalar constraint.
+//!
+//! One factorisation of the Jacobian per iteration serves the correction, the tangent, the
+//! orientation and the inertia. The iteration stops on the size of the correction that is still
+//! to come, estimated from the measured quadratic convergence, so that a good step needs no
+//! assembly that only confirms.
+
+use super::{Refusal, State, Weights};
+use crate::branch::Statistics;
+use crate::linalg::{Bordered, BorderedFacts, Matrix};
+use crate::problem::{EvalError, ParamId, Problem, Stability, check_finite};
+
+/// The scalar equation that closes the system.
+#[derive(Clone, Copy)]
+pub(crate) enum Constraint<'s> {
+    /// The plane normal to the tangent of a state, at this scaled arclength from it.
+    Plane(&'s State, f64),
+    /// The parameter takes this value; the state orients the tangent.
+    Parameter(&'s State, f64),
+}
+
+/// How well the corrector must know where it stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Precision {
+    /// The solution is converged; tangent and inertia belong to a state within 1e-4 of it.
+    Step,
+    /// The tangent too belongs to the converged solution.
+    Event,
+}
+
+/// What a correction did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Corrected {
+    /// Scaled length of the first correction.
+    pub(crate) first: f64,
+    /// Largest ratio of successive corrections.
+    pub(crate) contraction: f64,
+    /// Scaled length of the last correction.
+    pub(crate) last: f64,
+}
+
+/// The problem, its matrices and all work space of the tracer.
+pub(crate) struct Core<'a, P: Problem> {
+    pub(crate) problem: &'a P,
+    pub(crate) which: ParamId,
+    pub(crate) weights: Weights,
+    pub(crate) statistics: Statistics,
+    tolerance: f64,
+    max_iterations: usize,
+    p: Vec<f64>,
+    jacobian: P::Jacobian,
+    bordered: Bordered,
+    facts: Option<BorderedFacts>,
+    r: Vec<f64>,
+    du: Vec<f64>,
+    mdu: Vec<f64>,
+    shifted: [Vec<f64>; 2],
+    observed: [Vec<f64>; 2],
+}
+
+impl<'a, P: Problem> Core<'a, P> {
+    pub(crate) fn new(
+        problem: &'a P,
+        which: ParamId,
+        p: &[f64],
+        weights: Weights,
+        tolerance: f64,
+        max_iterations: usize,
+    ) -> Self {
+        let n = problem.dim();
+        let m = problem.observables().len();
+        Core {
+            problem,
+            which,
+            weights,
+            statistics: Statistics::default(),
+            tolerance,
+            max_iterations,
+            p: p.to_vec(),
+            jacobian: problem.new_jacobian(),
+            bordered: Bordered::new(n, 1),
+            facts: None,
+            r: vec![0.0; n],
+            du: vec![0.0; n],
+            mdu: vec![0.0; n],
+            shifted: [vec![0.0; n], vec![0.0; n]],
+            observed: [vec![0.0; m], vec![0.0; m]],
+        }
+    }
+
+    /// All parameters with the continued one at `p`.
+    pub(crate) fn parameters(&mut self, p: f64) -> &[f64] {
+        self.p[self.which.0] = p;
+        &self.p
+    }
+
+    /// Residual at a state, largest component.
+    pub(crate) fn residual(&mut self, x: &State) -> Result<f64, EvalError> {
+        self.p[self.which.0] = x.p;
+        self.problem.residual(&x.u, &self.p, &mut self.r)?;
+        Ok(self.r.iter().fold(0.0, |m, v| m.max(v.abs())))
+    }
+
+    fn assemble(&mut self, u: &[f64], p: f64) -> Result<(), EvalError> {
+        self.p[self.which.0] = p;
+        self.statistics.newton_iterations += 1;
+        self.problem.linearise(u, &self.p, &mut self.r, &mut self.jacobian)?;
+        let column = self.bordered.column_mut(0);
+        self.problem.parameter_derivative(u, &self.p, self.which, column)?;
+        check_finite(&self.r)?;
+        check_finite(self.bordered.column_mut(0))
+    }
+
+    fn border(&mut self, constraint: Constraint<'_>) {
+        let w = self.weights;
+        match constraint {
+            Constraint::Plane(base, _) => {
+                let factor = 1.0 / (w.unknowns * w.unknowns);
+                for (c, m) in self.bordered.row_mut(0).iter_mut().zip(&base.mtu) {
+                    *c = factor * m;
+                }
+                self.bordered.set_corner(0, 0, base.tp / (w.parameter * w.parameter));
+            }
+            Constraint::Parameter(..) => {
+                self.bordered.row_mut(0).fill(0.0);
+                self.bordered.set_corner(0, 0, 1.0);
+            }
+        }
+    }
+
+    /// Corrects `x.u`, `x.p` onto the branch and computes the tangent, observables and
+    /// stability there.
+    pub(crate) fn correct(
+        &mut self,
+        constraint: Constraint<'_>,
+        x: &mut State,
+        precision: Precision,
+    ) -> Result<Corrected, Refusal> {
+        let w = self.weights;
+        self.problem.metric(&x.u, &mut self.mdu);
+        let size = 1.0 + w.norm(&self.mdu, &x.u, x.p);
+        let (converged, near) = (self.tolerance * size, 1e-4 * size);
+        let mut report = Corrected { first: 0.0, contraction: 0.0, last: f64::INFINITY };
+        for iteration in 0..self.max_iterations {
+            self.assemble(&x.u, x.p).map_err(Refusal::Evaluation)?;
+            self.border(constraint);
+            let facts = self.bordered.factor(&mut self.jacobian);
+            self.facts = Some(facts);
+            let mut g = [match constraint {
+                Constraint::Plane(base, distance) => {
+                    let du = x.u.iter().zip(&base.u).zip(&base.mtu);
+                    let along: f64 = du.map(|((u, u0), m)| (u - u0) * m).sum();
+                    along / (w.unknowns * w.unknowns)
+                        + base.tp * (x.p - base.p) / (w.parameter * w.parameter)
+                        - distance
+                }
+                Constraint::Parameter(_, value) => x.p - value,
+            }];
+            self.du.copy_from_slice(&self.r);
+            self.bordered.solve(&mut self.jacobian, &mut self.du, &mut g);
+            self.problem.metric(&self.du, &mut self.mdu);
+            let correction = w.norm(&self.mdu, &self.du, g[0]);
+            if !correction.is_finite() {
+                return Err(Refusal::Singular);
+            }
+            for (u, du) in x.u.iter_mut().zip(&self.du) {
+                *u -= du;
+            }
+            x.p -= g[0];
+            if let Constraint::Parameter(_, value) = constraint {
+                x.p = value;
+            }
+            let mut expected = correction;
+            if iteration == 0 {
+                report.first = correction;
+            } else {
+                let ratio = correction / report.last;
+                if correction > converged {
+                    report.contraction = report.contraction.max(ratio);
+                    // later ratios of a converging iteration are smaller still
+                    if ratio > 0.5 && iteration > 1 || ratio > 2.0 {
+                        return Err(Refusal::Contraction { contraction: ratio });
+                    }
+                }
+                // quadratic convergence: what the next correction would be
+                expected = (correction * ratio * ratio * 100.0).min(correction);
+            }
+            report.last = correction;
+            let done = match precision {
+                Precision::Step => expected <= converged && correction <= near,
+                Precision::Event => correction <= 1e3 * converged && expected <= converged,
+            };
+            if done {
+                self.finish(constraint, x)?;
+                return Ok(report);
+            }
+        }
+        Err(Refusal::Contraction { contraction: report.contraction })
+    }
+
+    /// Tangent, orientation, stability and observables from the latest factors.
+    fn finish(&mut self, constraint: Constraint<'_>, x: &mut State) -> Result<(), Refusal> {
+        if let Constraint::Parameter(base, _) = constraint {
+            self.border(Constraint::Plane(base, 0.0));
+            self.facts = Some(self.bordered.factor(&mut self.jacobian));
+        }
+        x.tu.fill(0.0);
+        let mut g = [1.0];
+        self.bordered.solve(&mut self.jacobian, &mut x.tu, &mut g);
+        x.tp = g[0];
+        self.complete(x)
+    }
+
+    /// Everything at `x` that follows from its tangent, which need not be normalised yet.
+    fn complete(&mut self, x: &mut State) -> Result<(), Refusal> {
+        self.normalise(x)?;
+        let Some(facts) = self.facts else { return Err(Refusal::Singular) };
+        x.orientation = facts.det_sign.unwrap_or(0);
+        x.unstable = self.count_unstable(&facts);
+        self.observe(x).map_err(Refusal::Evaluation)
+    }
+
+    fn normalise(&mut self, x: &mut State) -> Result<(), Refusal> {
+        self.problem.metric(&x.tu, &mut x.mtu);
+        let norm = self.weights.norm(&x.mtu, &x.tu, x.tp);
+        if !(norm.is_finite() && norm > 0.0) {
+            return Err(Refusal::Singular);
+        }
+        x.length = (super::dot(&x.mtu, &x.tu) + x.tp * x.tp).max(0.0).sqrt();
+        x.slopes.fill(0.0);
+        x.scale_tangent(1.0 / norm);
+        Ok(())
+    }
+
+    fn count_unstable(&self, facts: &BorderedFacts) -> Option<usize> {
+        match self.problem.stability() {
+            Stability::None => None,
+            Stability::EnergyHessian => match facts.core.inertia {
+                Some((negative, _)) => Some(negative.saturating_sub(self.problem.multipliers())),
+                None => {
+                    let spectrum = self.jacobian.spectrum()?;
+                    let negative = spectrum.iter().filter(|(re, _)| *re < 0.0).count();
+                    Some(negative.saturating_sub(self.problem.multipliers()))
+                }
+            },
+            Stability::Dynamics => match facts.core.inertia {
+                Some((_, positive)) => Some(positive),
+                None => {
+                    Some(self.jacobian.spectrum()?.iter().filter(|(re, _)| *re > 0.0).count())
+                }
+            },
+        }
+    }
+
+    /// Observables and their slopes along the tangent.
+    fn observe(&mut self, x: &mut State) -> Result<(), EvalError> {
+        if x.values.is_empty() {
+            return Ok(());
+        }
+        self.p[self.which.0] = x.p;
+        self.problem.observe(&x.u, &self.p, &mut x.values)?;
+        let mut differences = false;
+        for k in 0..x.values.len() {
+            let slope =
+                self.problem.observable_slope(k, &x.u, &self.p, self.which, &x.tu, x.tp)?;
+            x.slopes[k] = slope.unwrap_or(f64::NAN);
+            differences |= slope.is_none();
+        }
+        if !differences {
+            return Ok(());
+        }
+        // central differences for the observables without a slope of their own
+        let h = 1e-6;
+        for (side, sign) in [(0, 1.0), (1, -1.0)] {
+            for i in 0..x.u.len() {
+                self.shifted[side][i] = x.u[i] + sign * h * x.tu[i];
+            }
+            self.p[self.which.0] = x.p + sign * h * x.tp;
+            self.problem.observe(&self.shifted[side], &self.p, &mut self.observed[side])?;
+        }
+        for k in 0..x.values.len() {
+            if x.slopes[k].is_nan() {
+                x.slopes[k] = (self.observed[0][k] - self.observed[1][k]) / (2.0 * h);
+            }
+        }
+        Ok(())
+    }
+
+    /// The first state: `x.u` solves `f(u, x.p) = 0`; computes its tangent, the parameter
+    /// increasing or not, and lets `weigh` choose the weights from `(|du/dp|, |u|)` before the
+    /// tangent is normalised.
+    pub(crate) fn start(
+        &mut self,
+        x: &mut State,
+        increasing: bool,
+        weigh: impl FnOnce(f64, f64) -> Weights,
+    ) -> Result<(), Refusal> {
+        self.assemble(&x.u, x.p).map_err(Refusal::Evaluation)?;
+        let sign = if increasing { 1.0 } else { -1.0 };
+        // any border that is not orthogonal to the tangent serves: the parameter first, and
+        // where the start is a fold, the direction that this solve returns
+        let mut rhs = [1.0];
+        self.bordered.row_mut(0).fill(0.0);
+        self.bordered.set_corner(0, 0, 1.0);
+        self.bordered.factor(&mut self.jacobian);
+        x.tu.fill(0.0);
+        self.bordered.solve(&mut self.jacobian, &mut x.tu, &mut rhs);
+        x.tp = rhs[0];
+        self.problem.metric(&x.tu, &mut x.mtu);
+        let du_dp = super::dot(&x.mtu, &x.tu).max(0.0).sqrt() / x.tp.abs();
+        self.problem.metric(&x.u, &mut self.mdu);
+        self.weights = weigh(du_dp, super::dot(&self.mdu, &x.u).max(0.0).sqrt());
+        self.normalise(x)?;
+        x.scale_tangent(sign);
+        let base = x.clone();
+        self.border(Constraint::Plane(&base, 0.0));
+        self.facts = Some(self.bordered.factor(&mut self.jacobian));
+        x.tu.fill(0.0);
+        let mut g = [1.0];
+        self.bordered.solve(&mut self.jacobian, &mut x.tu, &mut g);
+        x.tp = g[0];
+        self.complete(x)
+    }
+
+    /// Distance between two states in the scaled metric and the cosines of the angles between
+    /// the secant and the tangents at both ends.
+    pub(crate) fn secant(&mut self, a: &State, b: &State) -> (f64, f64, f64) {
+        for i in 0..a.u.len() {
+            self.du[i] = b.u[i] - a.u[i];
+        }
+        let dp = b.p - a.p;
+        self.problem.metric(&self.du, &mut self.mdu);
+        let distance = self.weights.norm(&self.mdu, &self.du, dp);
+        let at = |x: &State| {
+            let along = self.weights.dot(&self.mdu, dp, &x.tu, x.tp);
+            if distance > 0.0 { along / distance } else { 1.0 }
+        };
+        (distance, at(a), at(b))
+    }
+
+    /// Length of `u - u0` in the problem's metric.
+    pub(crate) fn excursion(&mut self, u: &[f64], u0: &[f64]) -> f64 {
+        for i in 0..u.len() {
+            self.du[i] = u[i] - u0[i];
+        }
+        self.problem.metric(&self.du, &mut self.mdu);
+        super::dot(&self.mdu, &self.du).max(0.0).sqrt()
+    }
+}

@@ -1,0 +1,57 @@
+//! One step along a branch: predict, correct, judge; accepted, or refused with a reason.
+
+mod corrector;
+mod judge;
+mod size;
+mod state;
+mod weights;
+
+pub(crate) use corrector::{Constraint, Core, Precision};
+pub(crate) use judge::{Quality, judge};
+pub(crate) use size::StepSize;
+pub(crate) use state::State;
+pub(crate) use weights::{Weights, dot};
+
+use crate::problem::EvalError;
+
+/// Why a step was refused.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// The problem has no value at the predicted or an iterated state.
+    #[error("{0}")]
+    Evaluation(EvalError),
+    /// The corrector converges too slowly or not at all.
+    #[error("the corrector does not converge (contraction {contraction:.2e})")]
+    Contraction {
+        /// Ratio of successive corrections.
+        contraction: f64,
+    },
+    /// The bordered Jacobian is singular.
+    #[error("the bordered Jacobian is singular")]
+    Singular,
+    /// The solution found is too far from the predicted one.
+    #[error("the solution is far from the prediction ({ratio:.2} of the step)")]
+    FarFromPrediction {
+        /// Distance over step length.
+        ratio: f64,
+    },
+    /// The tangent turns too much.
+    #[error("the branch turns by {angle:.2} radians in one step")]
+    Turn {
+        /// Angle in radians.
+        angle: f64,
+    },
+    /// The orientation of the branch changed: a branch point, a jump or a reversal.
+    #[error("the orientation of the branch changes within the step")]
+    Orientation,
+    /// The number of unstable modes changed without a special point that explains it.
+    #[error("the number of unstable modes changes without a fold")]
+    Stability,
+    /// An observable or the parameter varies too much for its events to be told apart.
+    #[error("an observed function is not resolved by the step")]
+    Unresolved,
+    /// More than one special point in the step.
+    #[error("more than one special point within the step")]
+    SeveralEvents,
+}

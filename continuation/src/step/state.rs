@@ -1,0 +1,66 @@
+//! A solution with its tangent and everything that events are read from.
+
+/// A solution on the branch. Storage is allocated once and reused.
+#[derive(Debug, Clone)]
+pub(crate) struct State {
+    /// Unknowns.
+    pub(crate) u: Vec<f64>,
+    /// Continued parameter.
+    pub(crate) p: f64,
+    /// Unknowns' part of the tangent, of unit length in the scaled metric.
+    pub(crate) tu: Vec<f64>,
+    /// Parameter's part of the tangent.
+    pub(crate) tp: f64,
+    /// `M tu`.
+    pub(crate) mtu: Vec<f64>,
+    /// Length of the tangent in the problem's metric.
+    pub(crate) length: f64,
+    /// Sign of the determinant of the Jacobian bordered by the tangent.
+    pub(crate) orientation: i8,
+    /// Number of unstable modes.
+    pub(crate) unstable: Option<usize>,
+    /// Observables.
+    pub(crate) values: Vec<f64>,
+    /// Derivatives of the observables along the tangent (per scaled arclength).
+    pub(crate) slopes: Vec<f64>,
+}
+
+impl State {
+    pub(crate) fn new(n: usize, observables: usize) -> Self {
+        State {
+            u: vec![0.0; n],
+            p: 0.0,
+            tu: vec![0.0; n],
+            tp: 0.0,
+            mtu: vec![0.0; n],
+            length: 1.0,
+            orientation: 0,
+            unstable: None,
+            values: vec![0.0; observables],
+            slopes: vec![0.0; observables],
+        }
+    }
+
+    /// Copies without allocating.
+    pub(crate) fn copy_from(&mut self, other: &State) {
+        self.u.copy_from_slice(&other.u);
+        self.tu.copy_from_slice(&other.tu);
+        self.mtu.copy_from_slice(&other.mtu);
+        self.values.copy_from_slice(&other.values);
+        self.slopes.copy_from_slice(&other.slopes);
+        self.p = other.p;
+        self.tp = other.tp;
+        self.length = other.length;
+        self.orientation = other.orientation;
+        self.unstable = other.unstable;
+    }
+
+    /// Multiplies the tangent, and all that is measured along it.
+    pub(crate) fn scale_tangent(&mut self, factor: f64) {
+        self.tu.iter_mut().for_each(|x| *x *= factor);
+        self.mtu.iter_mut().for_each(|x| *x *= factor);
+        self.slopes.iter_mut().for_each(|x| *x *= factor);
+        self.tp *= factor;
+        self.length *= factor.abs();
+    }
+}

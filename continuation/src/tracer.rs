@@ -1,0 +1,604 @@
+//! The tracer: an iterator over the points of a branch.
+//!
+//! ```
+//! use continuation::{Settings, Tracer, EventKind, samples::Cusp};
+//!
+//! // μ + x − x³ = 0, from the lower sheet upwards: folds at μ = ±2/(3√3)
+//! let settings = Settings { target: Some(2.0), ..Settings::default() };
+//! let branch = Tracer::new(&Cusp, "mu", &[-1.5], &[-2.0, 1.0], settings)?.run(&mut |_| {
+//!     std::ops::ControlFlow::Continue(())
+//! });
+//! let folds: Vec<f64> = branch.events_of(&EventKind::Fold).map(|e| e.p).collect();
+//! let exact = 2.0 / (3.0 * 3f64.sqrt());
+//! assert_eq!(folds.len(), 2);
+//! assert!((folds[0] - exact).abs() < 1e-12 && (folds[1] + exact).abs() < 1e-12);
+//! # Ok::<(), continuation::TraceError>(())
+//! ```
+
+use crate::branch::{Branch, BranchPoint, Event, EventKind, Statistics, Stop, StopReason};
+use crate::events::{Candidate, Detector, Located, Role, Watch, locate};
+use crate::newton::{NewtonError, NewtonSettings, newton};
+use crate::problem::{ParamId, Problem};
+use crate::settings::{Settings, SettingsError};
+use crate::step::{Constraint, Core, Precision, Refusal, State, StepSize, Weights, judge};
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+
+/// Why a trace could not begin.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TraceError {
+    /// A setting is out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// No parameter of that name.
+    #[error("no parameter `{name}`; there are: {known}")]
+    UnknownParameter {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// No observable of that name.
+    #[error("no observable `{name}`; there are: {known}")]
+    UnknownObservable {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// A vector of the wrong length.
+    #[error("{what} has length {got}, but the problem needs {expected}")]
+    Length {
+        /// Which vector.
+        what: &'static str,
+        /// Its length.
+        got: usize,
+        /// The right length.
+        expected: usize,
+    },
+    /// The starting values are not finite.
+    #[error("{what} holds a number that is not finite (index {at})")]
+    NotFinite {
+        /// Which vector.
+        what: &'static str,
+        /// Where.
+        at: usize,
+    },
+    /// No solution at the start.
+    #[error("no solution at the start: {0}")]
+    Start(NewtonError),
+    /// The branch has no tangent at the start.
+    #[error("no tangent at the start: {0}")]
+    Tangent(Refusal),
+}
+
+/// What an observer is told after every point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Points so far.
+    pub points: usize,
+    /// Special points so far.
+    pub events: usize,
+    /// Value of the continued parameter.
+    pub p: f64,
+    /// Arclength so far.
+    pub s: f64,
+}
+
+/// Traces one branch; yields its points in order, special points included.
+pub struct Tracer<'a, P: Problem> {
+    core: Core<'a, P>,
+    settings: Settings,
+    detector: Detector,
+    size: StepSize,
+    start: State,
+    start_p: Vec<f64>,
+    previous: State,
+    // scaled length of the last step; 0 when `previous` says nothing about the curvature
+    previous_h: f64,
+    current: State,
+    trial: State,
+    work: State,
+    left_start: bool,
+    s: f64,
+    running_unstable: Option<usize>,
+    queue: VecDeque<BranchPoint>,
+    emitted: usize,
+    events: Vec<Event>,
+    stop: Option<Stop>,
+}
+
+impl<'a, P: Problem> Tracer<'a, P> {
+    /// Prepares a trace of the branch through the solution near `u` in the named parameter.
+    ///
+    /// # Errors
+    /// When the input is unusable or there is no solution near `u`.
+    pub fn new(
+        problem: &'a P,
+        parameter: &str,
+        u: &[f64],
+        p: &[f64],
+        settings: Settings,
+    ) -> Result<Self, TraceError> {
+        settings.validate()?;
+        let n = problem.dim();
+        let parameters = problem.parameters();
+        let Some(which) = parameters.iter().position(|q| q.name == parameter) else {
+            let known = parameters.iter().map(|q| q.name).collect::<Vec<_>>().join(", ");
+            return Err(TraceError::UnknownParameter { name: parameter.to_owned(), known });
+        };
+        check("the starting state", u, n)?;
+        check("the parameter vector", p, parameters.len())?;
+        let mut start = State::new(n, problem.observables().len());
+        start.u.copy_from_slice(u);
+        start.p = p[which];
+        let report = newton(problem, &mut start.u, p, &NewtonSettings::default())
+            .map_err(TraceError::Start)?;
+
+        let range = match (settings.target, settings.domain) {
+            (Some(target), _) if target != start.p => (target - start.p).abs(),
+            (_, Some((lo, hi))) => hi - lo,
+            _ => parameters[which].scale.abs().max(f64::MIN_POSITIVE),
+        };
+        let increasing = settings
+            .increasing
+            .unwrap_or_else(|| settings.target.is_none_or(|target| target > start.p));
+        let unit = Weights { unknowns: 1.0, parameter: 1.0 };
+        let mut core = Core::new(
+            problem,
+            ParamId(which),
+            p,
+            unit,
+            settings.tolerance,
+            settings.max_iterations,
+        );
+        core.statistics.newton_iterations += report.iterations;
+        let natural = problem.unknown_scale();
+        core.start(&mut start, increasing, |du_dp, size| match natural {
+            Some(scale) => Weights { unknowns: scale, parameter: scale },
+            None => {
+                let along = du_dp * range;
+                let unknowns = [along, size, 1.0].into_iter().find(|x| x.is_finite() && *x > 0.0);
+                Weights { unknowns: unknowns.unwrap_or(1.0), parameter: range }
+            }
+        })
+        .map_err(TraceError::Tangent)?;
+        let size = StepSize::new(&settings, range / core.weights.parameter, start.length);
+        let detector =
+            Detector::new(&[], problem.observables(), settings.target, settings.domain)
+                .map_err(|name| unknown_observable(problem, name))?;
+        let mut tracer = Tracer {
+            core,
+            settings,
+            detector,
+            size,
+            start_p: p.to_vec(),
+            previous: start.clone(),
+            previous_h: 0.0,
+            current: start.clone(),
+            trial: start.clone(),
+            work: start.clone(),
+            left_start: false,
+            s: 0.0,
+            running_unstable: start.unstable,
+            queue: VecDeque::new(),
+            emitted: 0,
+            events: Vec::new(),
+            stop: None,
+            start,
+        };
+        tracer.detector.learn(&tracer.start);
+        let first = tracer.point(&tracer.start, 0.0, None, tracer.start.unstable);
+        tracer.queue.push_back(first);
+        Ok(tracer)
+    }
+
+    /// Watches for further special points.
+    ///
+    /// # Errors
+    /// When an observable is unknown.
+    pub fn watching(mut self, watches: &[Watch]) -> Result<Self, TraceError> {
+        let problem = self.core.problem;
+        self.detector = Detector::new(
+            watches,
+            problem.observables(),
+            self.settings.target,
+            self.settings.domain,
+        )
+        .map_err(|name| unknown_observable(problem, name))?;
+        self.detector.learn(&self.start);
+        Ok(self)
+    }
+
+    /// Why the trace ended, once it has.
+    pub fn stopped(&self) -> Option<&Stop> {
+        self.stop.as_ref()
+    }
+
+    /// Special points found so far.
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// Cost so far.
+    pub fn statistics(&self) -> Statistics {
+        self.core.statistics
+    }
+
+    /// Traces to the end and collects the branch. The observer may stop it; nothing computed
+    /// is lost.
+    pub fn run(
+        mut self,
+        observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Branch {
+        let mut points = Vec::new();
+        while let Some(point) = self.next() {
+            let progress = Progress {
+                points: points.len() + 1,
+                events: self.events.len(),
+                p: point.p,
+                s: point.s,
+            };
+            points.push(point);
+            if observer(&progress).is_break() && self.stop.is_none() {
+                self.end(StopReason::Interrupted, "interrupted".to_owned());
+            }
+        }
+        let problem = self.core.problem;
+        let stopped = self.stop.unwrap_or(Stop {
+            reason: StopReason::Interrupted,
+            detail: String::new(),
+        });
+        Branch {
+            parameter: problem.parameters()[self.core.which.0].name.to_owned(),
+            parameters: self.start_p,
+            observables: problem.observables().iter().map(|&s| s.to_owned()).collect(),
+            points,
+            events: self.events,
+            stopped,
+            statistics: self.core.statistics,
+        }
+    }
+
+    fn end(&mut self, reason: StopReason, detail: String) {
+        self.stop = Some(Stop { reason, detail });
+    }
+
+    fn point(
+        &self,
+        x: &State,
+        s: f64,
+        event: Option<usize>,
+        unstable: Option<usize>,
+    ) -> BranchPoint {
+        BranchPoint {
+            s,
+            p: x.p,
+            u: x.u.clone(),
+            dp_ds: x.tp / x.length,
+            unstable,
+            observables: x.values.clone(),
+            event,
+        }
+    }
+
+    /// One accepted step: fills the queue, or ends the trace.
+    fn advance(&mut self) {
+        if self.emitted + 1 >= self.settings.max_points {
+            let detail = format!("the limit of {} points was reached", self.settings.max_points);
+            return self.end(StopReason::MaxPoints, detail);
+        }
+        let length = self.current.length;
+        let shortest = self.size.shortest(length);
+        let mut h = self.size.h.clamp(shortest, self.size.longest(length).max(shortest));
+        loop {
+            let final_say = h <= self.size.resolution(length);
+            match self.attempt(h, final_say) {
+                Ok(()) => {
+                    self.core.statistics.accepted += 1;
+                    return;
+                }
+                Err(refusal) => {
+                    self.core.statistics.rejected += 1;
+                    h *= match refusal {
+                        Refusal::Evaluation(_) => 0.4,
+                        _ => 0.5,
+                    };
+                    if h < shortest {
+                        let p = self.current.p;
+                        let name = self.core.problem.parameters()[self.core.which.0].name;
+                        return self.end(
+                            StopReason::StepTooSmall,
+                            format!(
+                                "at {name} = {p:.10}, after {} halvings to {:.1e}: {refusal}",
+                                ((self.size.h / h).log2()).round(),
+                                h * length,
+                            ),
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    /// Tries a step of scaled length `h`.
+    fn attempt(&mut self, h: f64, final_say: bool) -> Result<(), Refusal> {
+        self.predict(h);
+        let Self { core, current, trial, settings, detector, .. } = self;
+        let corrected = core.correct(Constraint::Plane(current, h), trial, Precision::Step)?;
+        let secant = core.secant(current, trial);
+        let tangents = core.weights.dot(&current.mtu, current.tp, &trial.tu, trial.tp);
+        let quality = match judge(settings, current, trial, h, &corrected, secant, tangents) {
+            // a change of orientation that persists in a step this short is a branch point
+            Err(Refusal::Orientation) if final_say => step_quality(tangents),
+            other => other?,
+        };
+        detector.detect(current, trial, h, final_say)?;
+        let found = detector.found().len();
+        let s_trial = self.s + self.metric_distance();
+        let mut located: Vec<(Candidate, Located)> = Vec::new();
+        if found > 0 {
+            located = self.locate_all(h, found)?;
+        }
+        let returned = self.passes_start(h);
+        self.accept(h, &located, s_trial, returned)?;
+        let length = self.current.length;
+        self.size.accept(h, &quality, &self.settings, length);
+        Ok(())
+    }
+
+    /// Quadratic extrapolation of the branch; along the tangent at first.
+    fn predict(&mut self, h: f64) {
+        let Self { current, previous, trial, .. } = self;
+        let bend = if self.previous_h > 0.0 { 0.5 * h * h / self.previous_h } else { 0.0 };
+        for i in 0..trial.u.len() {
+            trial.u[i] = current.u[i] + (h + bend) * current.tu[i] - bend * previous.tu[i];
+        }
+        trial.p = current.p + (h + bend) * current.tp - bend * previous.tp;
+    }
+
+    fn metric_distance(&mut self) -> f64 {
+        let du = self.core.excursion(&self.trial.u, &self.current.u);
+        du.hypot(self.trial.p - self.current.p)
+    }
+
+    /// Locates every candidate of the step, sorted along it; the trace's end cuts the rest off.
+    fn locate_all(&mut self, h: f64, found: usize) -> Result<Vec<(Candidate, Located)>, Refusal> {
+        let Self { core, current, trial, work, detector, settings, .. } = self;
+        let mut located = Vec::with_capacity(found);
+        for candidate in detector.found() {
+            let at =
+                locate(core, current, trial, h, candidate, settings.event_tolerance, work)?;
+            located.push((*candidate, at));
+        }
+        located.sort_by(|a, b| a.1.at.total_cmp(&b.1.at));
+        if let Some(end) = located.iter().position(|(c, _)| c.ends_trace()) {
+            located.truncate(end + 1);
+        }
+        Ok(located)
+    }
+
+    /// Records the step's special points and its end.
+    fn accept(
+        &mut self,
+        h: f64,
+        located: &[(Candidate, Located)],
+        s_trial: f64,
+        returned: Option<StopReason>,
+    ) -> Result<(), Refusal> {
+        let (events_before, queue_before) = (self.events.len(), self.queue.len());
+        let running = self.running_unstable;
+        for (candidate, place) in located {
+            if let Err(refusal) = self.record(h, candidate, *place, s_trial, located) {
+                self.events.truncate(events_before);
+                self.queue.truncate(queue_before);
+                self.running_unstable = running;
+                self.stop = None;
+                return Err(refusal);
+            }
+        }
+        if self.stop.is_none() {
+            if let Some(reason) = returned {
+                let detail = match reason {
+                    StopReason::ClosedLoop => "the branch is a closed loop",
+                    _ => "the branch came back over its start in the opposite direction",
+                };
+                self.end(reason, detail.to_owned());
+            }
+            // a landing on the step's own end is that point
+            let last_is_end = located.last().is_some_and(|(_, l)| l.at >= h * (1.0 - 1e-12));
+            if !last_is_end {
+                let point = self.point(&self.trial, s_trial, None, self.trial.unstable);
+                self.queue.push_back(point);
+            }
+            self.running_unstable = self.trial.unstable;
+        }
+        self.detector.learn(&self.trial);
+        self.s = s_trial;
+        std::mem::swap(&mut self.previous, &mut self.current);
+        std::mem::swap(&mut self.current, &mut self.trial);
+        self.previous_h = h;
+        self.rescale();
+        if !self.left_start {
+            let away = self.core.excursion(&self.current.u, &self.start.u);
+            self.left_start =
+                away.hypot(self.current.p - self.start.p) > 1.5 * h * self.current.length;
+        }
+        Ok(())
+    }
+
+    /// Recomputes the located state and records it as a point and, unless it only lands on a
+    /// parameter value, as an event.
+    fn record(
+        &mut self,
+        h: f64,
+        candidate: &Candidate,
+        place: Located,
+        s_trial: f64,
+        located: &[(Candidate, Located)],
+    ) -> Result<(), Refusal> {
+        if located.len() > 1 {
+            let Self { core, current, trial, work, settings, .. } = self;
+            locate(core, current, trial, h, candidate, settings.event_tolerance, work)?;
+        }
+        let s = self.s + (s_trial - self.s) * place.at / h;
+        let before = self.running_unstable;
+        let after = match candidate {
+            Candidate::Fold | Candidate::BranchPoint => self.trial.unstable,
+            _ => before,
+        };
+        self.running_unstable = after;
+        let index = self.emitted + self.queue.len();
+        let kind = match *candidate {
+            Candidate::Fold => Some(EventKind::Fold),
+            Candidate::BranchPoint => Some(EventKind::BranchPoint),
+            Candidate::Value { observable, level, .. } => {
+                let name = self.core.problem.observables()[observable].to_owned();
+                Some(if level == 0.0 {
+                    EventKind::Zero(name)
+                } else {
+                    EventKind::Named(format!("{name}-value"))
+                })
+            }
+            Candidate::Extremum { observable } => {
+                let name = self.core.problem.observables()[observable].to_owned();
+                Some(if self.current.slopes[observable] < 0.0 {
+                    EventKind::Minimum(name)
+                } else {
+                    EventKind::Maximum(name)
+                })
+            }
+            Candidate::Parameter { role: Role::Landing, .. } => Some(EventKind::Target),
+            Candidate::Parameter { .. } => None,
+        };
+        let residual = self.core.residual(&self.work).map_err(Refusal::Evaluation)?;
+        let unstable = match (before, after) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            _ => before,
+        };
+        let event = kind.as_ref().map(|_| self.events.len());
+        let point = self.point(&self.work, s, event, unstable);
+        if let Some(kind) = kind {
+            self.events.push(Event {
+                kind,
+                point: index,
+                p: self.work.p,
+                unstable_before: before,
+                unstable_after: after,
+                residual,
+                error_estimate: place.error * self.work.length,
+            });
+        }
+        self.queue.push_back(point);
+        if candidate.ends_trace() {
+            match candidate {
+                Candidate::Parameter { role: Role::Target, .. } => {
+                    self.end(StopReason::Target, String::new());
+                }
+                Candidate::Parameter { .. } => {
+                    self.end(StopReason::Domain, "the bound of the domain was reached".to_owned());
+                }
+                _ => self.end(StopReason::Target, "an observable reached its value".to_owned()),
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the step passes over the start of the branch, and in which direction.
+    fn passes_start(&mut self, h: f64) -> Option<StopReason> {
+        if !self.left_start {
+            return None;
+        }
+        let Self { core, current, trial, start, .. } = self;
+        let w = core.weights;
+        let side = |x: &State| {
+            let along: f64 =
+                x.u.iter().zip(&start.u).zip(&start.mtu).map(|((a, b), m)| (a - b) * m).sum();
+            along / (w.unknowns * w.unknowns)
+                + start.tp * (x.p - start.p) / (w.parameter * w.parameter)
+        };
+        let (a, b) = (side(current), side(trial));
+        if a * b > 0.0 {
+            return None;
+        }
+        // nearest point of the step's chord: on the branch up to its curvature
+        let (distance, ..) = core.secant(current, start);
+        if distance > 1.5 * h {
+            return None;
+        }
+        let t = distance / h;
+        let off = {
+            let mut sum = 0.0;
+            let [w0, w1, w2, w3] = crate::events::basis(t.min(1.0));
+            for i in 0..start.u.len() {
+                let x = w0 * current.u[i]
+                    + w1 * h * current.tu[i]
+                    + w2 * trial.u[i]
+                    + w3 * h * trial.tu[i];
+                self.work.u[i] = x;
+                sum += (x - start.u[i]).abs();
+            }
+            let u = core.excursion(&self.work.u, &start.u) / w.unknowns;
+            let p = w0 * current.p + w1 * h * current.tp + w2 * trial.p + w3 * h * trial.tp;
+            if sum.is_finite() { u.hypot((p - start.p) / w.parameter) } else { f64::INFINITY }
+        };
+        if off > 0.02 * h {
+            return None;
+        }
+        let direction = w.dot(&start.mtu, start.tp, &current.tu, current.tp);
+        Some(if direction > 0.0 { StopReason::ClosedLoop } else { StopReason::ReturnedToStart })
+    }
+
+    /// Adapts the scale of the unknowns to their growing range.
+    fn rescale(&mut self) {
+        if self.core.problem.unknown_scale().is_some() {
+            return;
+        }
+        let range = self.core.excursion(&self.current.u, &self.start.u);
+        if range > 2.0 * self.core.weights.unknowns {
+            self.core.weights.unknowns = range;
+            let x = &mut self.current;
+            let norm = self.core.weights.norm(&x.mtu, &x.tu, x.tp);
+            x.scale_tangent(1.0 / norm);
+            self.size.h *= norm;
+            self.previous_h = 0.0;
+        }
+    }
+}
+
+impl<P: Problem> Iterator for Tracer<'_, P> {
+    type Item = BranchPoint;
+
+    fn next(&mut self) -> Option<BranchPoint> {
+        if self.queue.is_empty() && self.stop.is_none() {
+            self.advance();
+        }
+        let point = self.queue.pop_front();
+        self.emitted += usize::from(point.is_some());
+        point
+    }
+}
+
+/// Quality of a step over a branch point, where the corrector's contraction means little.
+fn step_quality(tangents: f64) -> crate::step::Quality {
+    crate::step::Quality {
+        angle: tangents.clamp(-1.0, 1.0).acos(),
+        contraction: 0.0,
+        deviation: 0.0,
+    }
+}
+
+fn check(what: &'static str, values: &[f64], expected: usize) -> Result<(), TraceError> {
+    if values.len() != expected {
+        return Err(TraceError::Length { what, got: values.len(), expected });
+    }
+    match values.iter().position(|v| !v.is_finite()) {
+        Some(at) => Err(TraceError::NotFinite { what, at }),
+        None => Ok(()),
+    }
+}
+
+fn unknown_observable<P: Problem>(problem: &P, name: String) -> TraceError {
+    TraceError::UnknownObservable { name, known: problem.observables().join(", ") }
+}
