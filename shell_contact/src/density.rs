@@ -243,11 +243,7 @@ pub fn linearise<T: Scalar, L: Membrane, F: Potential>(
             + mf * k.kphi_ss,
         s1_s2: k.psi_s * ms_s - ms * k.psi_zz,
         s1_z: film_pull * s1,
-        s1_z1: along * s1 * z1
-            + k.ks_z * ms_s
-            + k.kphi_z * mf_s
-            + ms * k.ks_sz
-            + mf * k.kphi_sz,
+        s1_z1: along * s1 * z1 + k.ks_z * ms_s + k.kphi_z * mf_s + ms * k.ks_sz + mf * k.kphi_sz,
         s1_z2: k.psi_z * ms_s + ms * k.psi_sz,
         s2_s2: k.psi_s * kb_s,
         s2_z1: k.psi_s * ms_z + ms * k.psi_sz,
@@ -329,8 +325,7 @@ mod tests {
             let total = |x: [HyperDual64; 6], gas: f64| {
                 let place = Place { s: [x[0], x[1], x[2]], z: [x[3], x[4], x[5]] };
                 let p = parts(&law, &FourTwo, &c, &dual, &place);
-                p.stretching + p.bending + p.film + p.area * c.surface_tension
-                    - p.volume * gas
+                p.stretching + p.bending + p.film + p.area * c.surface_tension - p.volume * gas
             };
             let plain = partials(x, |x| total(x, 0.0));
             let full = partials(x, |x| total(x, excess));

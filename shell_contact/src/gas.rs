@@ -80,7 +80,7 @@ fn second(t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dual::close;
+    use crate::dual::{close, partials};
 
     const GAS: Gas = Gas { ambient: 3.0, surface_tension: 0.08, exponent: 1.07 };
 
@@ -130,15 +130,22 @@ mod tests {
         assert_eq!(constant.energy(0.2), 0.0);
     }
 
+    /// Eq. (15c) as written, differentiated automatically.
     #[test]
-    fn derivatives_agree_with_differences() {
-        let v = 0.29;
-        let h = 1e-5;
-        close((GAS.energy(v + h) - GAS.energy(v - h)) / (2.0 * h), -GAS.excess(v), 1e-9, 0.0);
-        close((GAS.excess(v + h) - GAS.excess(v - h)) / (2.0 * h), -GAS.stiffness(v), 1e-9, 0.0);
-        let up = Gas { ambient: 3.0 + h, ..GAS }.excess(v);
-        close((up - GAS.excess(v)) / h, GAS.excess_by_ambient(v), 1e-9, 0.0);
-        let up = Gas { surface_tension: 0.08 + h, ..GAS }.excess(v);
-        close((up - GAS.excess(v)) / h, GAS.excess_by_surface_tension(v), 1e-9, 0.0);
+    fn derivatives_agree_with_dual_numbers() {
+        use num_dual::DualNum;
+        for volume in [0.12, 0.29, 0.34, 0.6] {
+            let rest = REST_VOLUME;
+            let d = partials([volume, 3.0, 0.08], |x| {
+                let [v, ambient, tension] = x;
+                let ratio = v.recip() * rest;
+                let work = (ratio.powf(0.07) - 1.0) * (rest / 0.07);
+                ambient * (v - rest) + (ambient + tension * 2.0) * work
+            });
+            close(GAS.excess(volume), -d.gradient[0], 1e-12, 1e-14);
+            close(GAS.stiffness(volume), d.hessian[0][0], 1e-12, 0.0);
+            close(GAS.excess_by_ambient(volume), -d.hessian[0][1], 1e-12, 1e-14);
+            close(GAS.excess_by_surface_tension(volume), -d.hessian[0][2], 1e-12, 0.0);
+        }
     }
 }

@@ -24,6 +24,8 @@
 //! ```
 
 pub mod bending;
+#[cfg(test)]
+mod certify;
 pub mod contact;
 pub mod density;
 #[cfg(test)]

@@ -364,7 +364,7 @@ mod tests {
                     (u * u + w * w) * s.sin() * h
                 })
                 .sum();
-            close(product, sum, 1e-8, 0.0);
+            close(product, sum, 1e-6, 0.0);
         }
     }
 

@@ -93,8 +93,7 @@ pub(crate) fn observe<F: Potential>(
 ) -> Result<Observation, EvalError> {
     let (c, gas) = problem.coefficients(u, p)?;
     let mesh = &problem.mesh;
-    let parts =
-        with_law!(problem, |law| energy::parts(mesh, u, &law, &problem.potential, &c))?;
+    let parts = with_law!(problem, |law| energy::parts(mesh, u, &law, &problem.potential, &c))?;
     let whole = 4.0 * PI;
     let energies = [
         parts.stretching,

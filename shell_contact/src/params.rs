@@ -232,7 +232,10 @@ impl Physical {
     ///
     /// # Errors
     /// Names the first quantity that is outside what the model allows, by its physical name.
-    pub fn to_dimensionless(&self, poisson: f64) -> Result<(Dimensionless, Scales), ParameterError> {
+    pub fn to_dimensionless(
+        &self,
+        poisson: f64,
+    ) -> Result<(Dimensionless, Scales), ParameterError> {
         require(
             "poisson",
             poisson,

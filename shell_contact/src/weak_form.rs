@@ -43,9 +43,8 @@ pub fn balances<F: Potential>(
     let excess = gas.excess(energy::volume(mesh, u)?);
     let knots = mesh.knots();
     let n = knots.elements();
-    let mut out: Vec<Balance> = (0..=n)
-        .map(|knot| Balance { knot, normal: 0.0, tangential: 0.0, weight: 0.0 })
-        .collect();
+    let mut out: Vec<Balance> =
+        (0..=n).map(|knot| Balance { knot, normal: 0.0, tangential: 0.0, weight: 0.0 }).collect();
     for e in 0..n {
         let (start, length) = (knots.at(e), knots.at(e + 1) - knots.at(e));
         for (x, weight) in gauss_legendre(8) {
@@ -67,14 +66,11 @@ pub fn balances<F: Potential>(
             let (bend_s, bend_phi) = (turning - 1.0, stretch_phi * kphi - 1.0);
             let ms = c.bending / stretch_phi * (bend_s + c.poisson * bend_phi);
             let mphi = c.bending / stretch_s * (bend_phi + c.poisson * bend_s);
-            let (tau_s, tau_phi) =
-                with_law!(problem, |law| tensions(&law, stretch_s, stretch_phi));
+            let (tau_s, tau_phi) = with_law!(problem, |law| tensions(&law, stretch_s, stretch_phi));
             let film = problem.potential.jet(c.plate - z, c.adhesion, c.film);
             // attraction positive, as Eq. (16) has it
             let disjoining = film.d1 * s1 / a;
-            let pressure = ks * tau_s
-                + kphi * tau_phi
-                + (ks + kphi) * (c.surface_tension + film.w)
+            let pressure = ks * tau_s + kphi * tau_phi + (ks + kphi) * (c.surface_tension + film.w)
                 - excess
                 - disjoining;
 
@@ -85,9 +81,7 @@ pub fn balances<F: Potential>(
                 let (b, b1, b2) = (basis[0][k], basis[1][k], basis[2][k]);
                 balance.weight += weight * b * s * a;
                 balance.normal += weight
-                    * (pressure * b * s * a
-                        - s * ms * (b2 * a - b1 * a1) / q
-                        - mphi * b1 * s1 / a);
+                    * (pressure * b * s * a - s * ms * (b2 * a - b1 * a1) / q - mphi * b1 * s1 / a);
                 balance.tangential += weight
                     * (tau_s * b1 * s
                         + b * s1 * tau_phi
