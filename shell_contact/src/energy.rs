@@ -208,20 +208,20 @@ pub fn parts<L: Membrane, F: Potential>(
 ) -> Result<Parts<f64>, EvalError> {
     let none = Lanes::ZERO;
     let mut total = Parts { stretching: none, bending: none, film: none, area: none, volume: none };
+    let volume = volume(mesh, x)?;
     each_cell(mesh, x, c.plate, |cell, place| {
         let p = density::parts(law, film, c, &cell.site(), place);
         total.stretching = total.stretching + p.stretching;
         total.bending = total.bending + p.bending;
         total.film = total.film + p.film;
         total.area = total.area + p.area;
-        total.volume = total.volume + p.volume;
     })?;
     Ok(Parts {
         stretching: total.stretching.sum(),
         bending: total.bending.sum(),
         film: total.film.sum(),
         area: total.area.sum(),
-        volume: check_volume(total.volume.sum(), x)?,
+        volume,
     })
 }
 

@@ -63,7 +63,12 @@ pub(crate) struct Point {
 }
 
 /// Walks from `start` to `end` by arclength and visits every accepted point.
-pub(crate) fn walk(problem: &ContactProblem, start: f64, end: f64, mut visit: impl FnMut(&Point, &Point)) {
+pub(crate) fn walk(
+    problem: &ContactProblem,
+    start: f64,
+    end: f64,
+    mut visit: impl FnMut(&Point, &Point),
+) {
     let n = problem.dim();
     let mut p = problem.parameters_at(start);
     let mut u = problem.initial_state();
@@ -151,7 +156,11 @@ fn correct(
 
 /// The states at given plate distances on the last stretch of the branch, with their numbers of
 /// negative eigenvalues.
-pub(crate) fn states_at(problem: &ContactProblem, start: f64, targets: &[f64]) -> Vec<(Vec<f64>, usize)> {
+pub(crate) fn states_at(
+    problem: &ContactProblem,
+    start: f64,
+    targets: &[f64],
+) -> Vec<(Vec<f64>, usize)> {
     let mut found: Vec<Option<(Vec<f64>, usize)>> = vec![None; targets.len()];
     let end = targets.iter().fold(f64::INFINITY, |m: f64, z| m.min(*z)) - 1e-3;
     walk(problem, start, end, |a, b| {
