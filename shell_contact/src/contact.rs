@@ -169,7 +169,8 @@ impl<F: Potential> ContactProblem<F> {
         u: &[f64],
         p: &[f64],
     ) -> Result<(Coefficients, Gas), EvalError> {
-        if let Some(at) = p.iter().take(parameter::COUNT).position(|x| !x.is_finite()) {
+        if let Some(at) = (0..parameter::COUNT).find(|&i| !p.get(i).is_some_and(|x| x.is_finite()))
+        {
             return Err(EvalError::NotFinite { at: u.len() + at });
         }
         let [plate, adhesion, bending, ambient, film, surface_tension] =
@@ -177,10 +178,10 @@ impl<F: Potential> ContactProblem<F> {
         let bad = |what, ParamId(i): ParamId, value| {
             Err(EvalError::Inadmissible { what, at: u.len() + i, value })
         };
-        if !(bending > 0.0) {
+        if bending <= 0.0 {
             return bad("the bending stiffness is not positive", parameter::BENDING, bending);
         }
-        if !(film > 0.0) {
+        if film <= 0.0 {
             return bad("the film length is not positive", parameter::FILM, film);
         }
         let poisson = self.shell.poisson;
@@ -227,7 +228,7 @@ impl<F: Potential> ContactProblem<F> {
         })
     }
 
-    /// `∂F/∂E_z`: the factor by which `∂E/∂z_p` becomes the reported force.
+    /// The factor by which `∂E/∂z_p` becomes the reported force.
     fn force_factor(bending: f64) -> f64 {
         -2.0 * PI / bending.sqrt()
     }

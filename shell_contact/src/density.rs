@@ -74,6 +74,39 @@ pub struct Hessian<T> {
     pub z2_z2: T,
 }
 
+impl<T: Scalar> Gradient<T> {
+    /// All zero.
+    pub fn zero() -> Gradient<T> {
+        Gradient { s: [T::constant(0.0); 3], z: [T::constant(0.0); 3] }
+    }
+}
+
+impl<T: Scalar> Hessian<T> {
+    /// All zero.
+    pub fn zero() -> Hessian<T> {
+        let o = T::constant(0.0);
+        Hessian {
+            s_s: o,
+            s_s1: o,
+            s_z: o,
+            s_z1: o,
+            s1_s1: o,
+            s1_s2: o,
+            s1_z: o,
+            s1_z1: o,
+            s1_z2: o,
+            s2_s2: o,
+            s2_z1: o,
+            s2_z2: o,
+            z_z: o,
+            z_z1: o,
+            z1_z1: o,
+            z1_z2: o,
+            z2_z2: o,
+        }
+    }
+}
+
 /// The parts of the energy at a point, each per `dS` times the weight.
 #[derive(Debug, Clone, Copy)]
 pub struct Parts<T> {

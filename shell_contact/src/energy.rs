@@ -321,6 +321,8 @@ pub fn add_linearisation<L: Membrane, F: Potential>(
     hessian: &mut SymmetricBand,
 ) -> Result<(), EvalError> {
     check_pole(mesh, x, c.plate)?;
+    let mut triangle = [[Lanes::ZERO; 8]; 8];
+    let mut lanes = (Gradient::zero(), Hessian::zero());
     for e in 0..mesh.elements() {
         let local = mesh.local(x, e);
         check_gap(mesh, x, e, &local, c.plate)?;
@@ -329,9 +331,10 @@ pub fn add_linearisation<L: Membrane, F: Potential>(
         for (k, cell) in mesh.cells(e).iter().enumerate() {
             let place = cell.place(&local);
             check_place(mesh, e, k, &place, c.plate)?;
-            let (g, h) = density::linearise(law, film, c, excess, &cell.site(), &place);
-            sum_vector(cell, &g, &mut vector);
-            sum_matrix(cell, &h, &mut matrix);
+            lane_density(law, film, c, excess, cell, &place, &mut lanes);
+            lane_matrix(cell, &lanes.1, &mut triangle);
+            sum_vector(cell, &lanes.0, &mut vector);
+            sum_matrix(&triangle, &mut matrix);
         }
         mesh.scatter(e, &vector, out);
         mesh.scatter_matrix(e, &matrix, hessian);
@@ -348,9 +351,15 @@ fn sum_vector(cell: &Cell, g: &Gradient<Lanes>, out: &mut [f64; 8]) {
     }
 }
 
-/// Adds `Bᵀ H B` to the triangle `[column][row]`, `row ≥ column`, of an element.
-#[inline(always)]
-fn sum_matrix(cell: &Cell, h: &Hessian<Lanes>, out: &mut [[f64; 8]; 8]) {
+/// The lower triangle `[column][row]` of an element, four Gauss points side by side.
+type LaneMatrix = [[Lanes; 8]; 8];
+
+/// `Bᵀ H B` at each of four Gauss points, into the triangle `row ≥ column` of `out`.
+///
+/// A function of its own, not inlined, writing to memory: the compiler then keeps to vector
+/// instructions, which it gives up when the sums over the lanes are in sight (a factor of two).
+#[inline(never)]
+fn lane_matrix(cell: &Cell, h: &Hessian<Lanes>, out: &mut LaneMatrix) {
     let [n, n1, n2] = &cell.basis;
     for j in 0..4 {
         let (b, b1, b2) = (n[j], n1[j], n2[j]);
@@ -365,15 +374,38 @@ fn sum_matrix(cell: &Cell, h: &Hessian<Lanes>, out: &mut [[f64; 8]; 8]) {
         let w_z1 = h.z_z1 * b + h.z1_z1 * b1 + h.z1_z2 * b2;
         let w_z2 = h.z1_z2 * b1 + h.z2_z2 * b2;
         for i in j..4 {
-            out[2 * j][2 * i] += (n[i] * u_s + n1[i] * u_s1 + n2[i] * u_s2).sum();
-            out[2 * j + 1][2 * i + 1] += (n[i] * w_z + n1[i] * w_z1 + n2[i] * w_z2).sum();
+            out[2 * j][2 * i] = n[i] * u_s + n1[i] * u_s1 + n2[i] * u_s2;
+            out[2 * j + 1][2 * i + 1] = n[i] * w_z + n1[i] * w_z1 + n2[i] * w_z2;
         }
         for i in 0..4 {
-            let value = (n[i] * u_z + n1[i] * u_z1 + n2[i] * u_z2).sum();
             let (column, row) = if i >= j { (2 * j, 2 * i + 1) } else { (2 * i + 1, 2 * j) };
-            out[column][row] += value;
+            out[column][row] = n[i] * u_z + n1[i] * u_z1 + n2[i] * u_z2;
         }
     }
+}
+
+/// Adds the sums over the lanes of a triangle.
+#[inline(always)]
+fn sum_matrix(lanes: &LaneMatrix, out: &mut [[f64; 8]; 8]) {
+    for column in 0..8 {
+        for row in column..8 {
+            out[column][row] += lanes[column][row].sum();
+        }
+    }
+}
+
+/// [`density::linearise`] kept apart for the same reason as [`lane_matrix`].
+#[inline(never)]
+fn lane_density<L: Membrane, F: Potential>(
+    law: &L,
+    film: &F,
+    c: &Coefficients,
+    excess: f64,
+    cell: &Cell,
+    place: &Place<Lanes>,
+    out: &mut (Gradient<Lanes>, Hessian<Lanes>),
+) {
+    *out = density::linearise(law, film, c, excess, &cell.site(), place);
 }
 
 fn check_finite(values: &[f64]) -> Result<(), EvalError> {

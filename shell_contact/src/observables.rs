@@ -129,6 +129,10 @@ fn contact_radius<F: Potential>(problem: &ContactProblem<F>, u: &[f64], c: &Coef
     }
     for e in (0..mesh.elements()).rev() {
         let (start, end) = (knots.at(e), knots.at(e + 1));
+        if c.plate - (mesh.cos_knot(e) + mesh.local(u, e).w_bound()) >= c.film {
+            outside = start; // thick everywhere in the element
+            continue;
+        }
         for quarter in (0..4).rev() {
             let s = start + 0.25 * f64::from(quarter) * (end - start);
             if thin(s) {

@@ -79,14 +79,14 @@ impl Lanes {
 }
 
 macro_rules! lanewise {
-    ($trait:ident, $method:ident, $op:tt) => {
+    ($trait:ident, $method:ident, $assign:tt) => {
         impl $trait for Lanes {
             type Output = Lanes;
             #[inline(always)]
             fn $method(self, other: Lanes) -> Lanes {
                 let mut out = self.0;
                 for l in 0..WIDTH {
-                    out[l] = out[l] $op other.0[l];
+                    out[l] $assign other.0[l];
                 }
                 Lanes(out)
             }
@@ -97,17 +97,17 @@ macro_rules! lanewise {
             fn $method(self, other: f64) -> Lanes {
                 let mut out = self.0;
                 for l in 0..WIDTH {
-                    out[l] = out[l] $op other;
+                    out[l] $assign other;
                 }
                 Lanes(out)
             }
         }
     };
 }
-lanewise!(Add, add, +);
-lanewise!(Sub, sub, -);
-lanewise!(Mul, mul, *);
-lanewise!(Div, div, /);
+lanewise!(Add, add, +=);
+lanewise!(Sub, sub, -=);
+lanewise!(Mul, mul, *=);
+lanewise!(Div, div, /=);
 
 impl Neg for Lanes {
     type Output = Lanes;

@@ -1,5 +1,5 @@
 //! A small Newton method and arclength walk, enough to reach the reference states.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use continuation::linalg::SymmetricBand;
 use continuation::{Matrix, Problem};
@@ -7,10 +7,14 @@ use shell_contact::contact::parameter::Z0;
 use shell_contact::{ContactProblem, Dimensionless, Law, Mesh, Shell};
 
 pub(crate) fn contact(elements: usize, law: Law, d: [f64; 6]) -> ContactProblem {
+    with_poisson(elements, law, 0.5, d)
+}
+
+pub(crate) fn with_poisson(elements: usize, law: Law, poisson: f64, d: [f64; 6]) -> ContactProblem {
     let [bending, pressure, adhesion, film, surface_tension, gas_exponent] = d;
     let groups = Dimensionless { bending, pressure, adhesion, film, surface_tension, gas_exponent };
     let mesh = Mesh::uniform(elements).unwrap();
-    ContactProblem::new(&Shell { law, poisson: 0.5 }, &groups, mesh).unwrap()
+    ContactProblem::new(&Shell { law, poisson }, &groups, mesh).unwrap()
 }
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -23,7 +27,7 @@ fn largest(a: &[f64]) -> f64 {
 
 /// Newton's method at fixed parameters, halving steps that leave the model; the number of
 /// negative eigenvalues of the last Hessian.
-pub(crate) fn newton(problem: &ContactProblem, u: &mut Vec<f64>, p: &[f64]) -> Option<usize> {
+pub(crate) fn newton(problem: &ContactProblem, u: &mut [f64], p: &[f64]) -> Option<usize> {
     let n = problem.dim();
     let (mut r, mut j) = (vec![0.0; n], problem.new_jacobian());
     let mut last = f64::INFINITY;
@@ -45,7 +49,7 @@ pub(crate) fn newton(problem: &ContactProblem, u: &mut Vec<f64>, p: &[f64]) -> O
                 return None;
             }
         }
-        *u = trial(share);
+        u.copy_from_slice(&trial(share));
     }
     None
 }
