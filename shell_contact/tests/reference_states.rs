@@ -1,6 +1,8 @@
 //! Equilibria against an independent solver of the same model (spherical unknowns, uniform cubic
 //! B-splines, 800 elements).
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
+
 mod support;
 use shell_contact::{ContactProblem, Law};
 use support::{contact, states_at, with_poisson};
