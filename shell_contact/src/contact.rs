@@ -1,0 +1,400 @@
+//! Contact of the shell with a plate at given distance, as a [`Problem`].
+//!
+//! Unknowns: spline coefficients of the displacement (module [`crate::spline`]); residual: gradient
+//! of the total potential energy of the half shell over `2π`; Jacobian: its Hessian. The number of
+//! negative eigenvalues is the number of unstable modes at fixed plate distance.
+
+use crate::density::{self, Coefficients};
+use crate::energy;
+use crate::film::{FourTwo, Potential};
+use crate::gas::Gas;
+use crate::membrane::Membrane;
+use crate::meridian::Mesh;
+use crate::observables::{self, Observation};
+use crate::params::{Dimensionless, ParameterError, Shell};
+use crate::scalar::{Lanes, Scalar};
+use crate::spline::HALF_BANDWIDTH;
+use continuation::linalg::SymmetricBand;
+use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
+use std::cell::RefCell;
+use std::f64::consts::PI;
+
+/// Indices of the parameters in `p`.
+pub mod parameter {
+    use continuation::ParamId;
+
+    /// Height of the plate above the equator, `z0/R0`.
+    pub const Z0: ParamId = ParamId(0);
+    /// Adhesion `w0/χ`.
+    pub const ADHESION: ParamId = ParamId(1);
+    /// Bending stiffness `k_b/(χR0²)`.
+    pub const BENDING: ParamId = ParamId(2);
+    /// Ambient pressure `P_A R0/χ`.
+    pub const PRESSURE: ParamId = ParamId(3);
+    /// Film length `δ_A/R0`.
+    pub const FILM: ParamId = ParamId(4);
+    /// Surface tension `γ_BW/χ`.
+    pub const SURFACE_TENSION: ParamId = ParamId(5);
+    /// How many there are.
+    pub const COUNT: usize = 6;
+}
+
+/// Runs `$body` with `$law` bound to the problem's membrane law as its own type.
+macro_rules! with_law {
+    ($problem:expr, |$law:ident| $body:expr) => {
+        match $problem.shell.law {
+            $crate::params::Law::Hooke => {
+                let $law = $crate::membrane::Hooke { poisson: $problem.shell.poisson };
+                $body
+            }
+            $crate::params::Law::MooneyRivlin { b } => {
+                let $law = $crate::membrane::MooneyRivlin { b };
+                $body
+            }
+            $crate::params::Law::Skalak => {
+                let $law = $crate::membrane::Skalak { poisson: $problem.shell.poisson };
+                $body
+            }
+        }
+    };
+}
+pub(crate) use with_law;
+
+/// A coated bubble between two plates, with the interaction potential `F`.
+#[derive(Debug, Clone)]
+pub struct ContactProblem<F: Potential = FourTwo> {
+    pub(crate) mesh: Mesh,
+    pub(crate) shell: Shell,
+    pub(crate) potential: F,
+    groups: Dimensionless,
+    parameters: [Parameter; parameter::COUNT],
+    volume_gradient: RefCell<Vec<f64>>,
+}
+
+impl ContactProblem {
+    /// The problem with the potential of Eq. (13a).
+    ///
+    /// # Errors
+    /// Names the first parameter that is outside what the model allows.
+    pub fn new(
+        shell: &Shell,
+        groups: &Dimensionless,
+        mesh: Mesh,
+    ) -> Result<ContactProblem, ParameterError> {
+        ContactProblem::with_potential(shell, groups, mesh, FourTwo)
+    }
+}
+
+impl<F: Potential> ContactProblem<F> {
+    /// The problem with another potential.
+    ///
+    /// # Errors
+    /// Names the first parameter that is outside what the model allows.
+    pub fn with_potential(
+        shell: &Shell,
+        groups: &Dimensionless,
+        mesh: Mesh,
+        potential: F,
+    ) -> Result<ContactProblem<F>, ParameterError> {
+        shell.validate()?;
+        groups.validate()?;
+        let scale = |value: f64, otherwise: f64| if value > 0.0 { value } else { otherwise };
+        let parameter = |name, unit, scale| Parameter { name, unit, scale };
+        let parameters = [
+            parameter("z0", "R0", 1.0),
+            parameter("adhesion", "chi", scale(groups.adhesion, 1e-3)),
+            parameter("bending", "chi R0^2", groups.bending),
+            parameter("pressure", "chi/R0", scale(groups.pressure, 1.0)),
+            parameter("film", "R0", groups.film),
+            parameter("surface_tension", "chi", scale(groups.surface_tension, 1e-2)),
+        ];
+        let volume_gradient = RefCell::new(vec![0.0; mesh.unknowns()]);
+        Ok(ContactProblem {
+            mesh,
+            shell: *shell,
+            potential,
+            groups: *groups,
+            parameters,
+            volume_gradient,
+        })
+    }
+
+    /// The unstressed sphere: an equilibrium when there is no film.
+    pub fn initial_state(&self) -> Vec<f64> {
+        vec![0.0; self.mesh.unknowns()]
+    }
+
+    /// The case's parameters with the plate at `z0`, in the order of [`Problem::parameters`].
+    pub fn parameters_at(&self, z0: f64) -> Vec<f64> {
+        let g = &self.groups;
+        vec![z0, g.adhesion, g.bending, g.pressure, g.film, g.surface_tension]
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// The shell's material.
+    pub fn shell(&self) -> &Shell {
+        &self.shell
+    }
+
+    /// The dimensionless groups of the case.
+    pub fn groups(&self) -> &Dimensionless {
+        &self.groups
+    }
+
+    /// Whether the shell stays on its side of plate, axis and equator: what an evaluation would
+    /// refuse, at a fraction of its cost.
+    ///
+    /// # Errors
+    /// Says what is violated.
+    pub fn admissible(&self, u: &[f64], p: &[f64]) -> Result<(), EvalError> {
+        let (c, _) = self.coefficients(u, p)?;
+        energy::admissible(&self.mesh, u, c.plate)
+    }
+
+    /// Everything that is reported of a state.
+    ///
+    /// # Errors
+    /// When the state is not admissible.
+    pub fn observation(&self, u: &[f64], p: &[f64]) -> Result<Observation, EvalError> {
+        observables::observe(self, u, p)
+    }
+
+    /// The numbers of the density and the gas, from the values in `p`.
+    pub(crate) fn coefficients(
+        &self,
+        u: &[f64],
+        p: &[f64],
+    ) -> Result<(Coefficients, Gas), EvalError> {
+        if let Some(at) = (0..parameter::COUNT).find(|&i| !p.get(i).is_some_and(|x| x.is_finite()))
+        {
+            return Err(EvalError::NotFinite { at: u.len() + at });
+        }
+        let [plate, adhesion, bending, ambient, film, surface_tension] =
+            std::array::from_fn(|i| p.get(i).copied().unwrap_or(f64::NAN));
+        let bad = |what, ParamId(i): ParamId, value| {
+            Err(EvalError::Inadmissible { what, at: u.len() + i, value })
+        };
+        if bending <= 0.0 {
+            return bad("the bending stiffness is not positive", parameter::BENDING, bending);
+        }
+        if film <= 0.0 {
+            return bad("the film length is not positive", parameter::FILM, film);
+        }
+        let poisson = self.shell.poisson;
+        let c = Coefficients { bending, poisson, surface_tension, adhesion, film, plate };
+        Ok((c, Gas { ambient, surface_tension, exponent: self.groups.gas_exponent }))
+    }
+
+    fn linearise_as<L: Membrane>(
+        &self,
+        law: &L,
+        u: &[f64],
+        p: &[f64],
+        r: &mut [f64],
+        j: &mut SymmetricBand,
+    ) -> Result<(), EvalError> {
+        let (c, gas) = self.coefficients(u, p)?;
+        // r holds v, the gradient of the volume, until the rank-one term has been set
+        let volume = energy::volume_gradient(&self.mesh, u, r)?;
+        let excess = gas.excess(volume);
+        j.set_zero();
+        j.set_rank_one(gas.stiffness(volume), r);
+        for r in r.iter_mut() {
+            *r *= -excess;
+        }
+        energy::add_linearisation(&self.mesh, u, law, &self.potential, &c, excess, r, j)
+    }
+
+    fn residual_as<L: Membrane>(
+        &self,
+        law: &L,
+        u: &[f64],
+        p: &[f64],
+        r: &mut [f64],
+    ) -> Result<(), EvalError> {
+        let (c, gas) = self.coefficients(u, p)?;
+        let volume = energy::volume_gradient(&self.mesh, u, r)?;
+        let excess = gas.excess(volume);
+        for r in r.iter_mut() {
+            *r *= -excess;
+        }
+        let film = &self.potential;
+        energy::add_gradient(&self.mesh, u, c.plate, r, |at, x| {
+            density::gradient(law, film, &c, at, x)
+        })
+    }
+
+    /// The factor by which `∂E/∂z_p` becomes the reported force.
+    fn force_factor(bending: f64) -> f64 {
+        -2.0 * PI / bending.sqrt()
+    }
+
+    /// Slope of `∂E/∂z_p` in the direction `(du, dp)`.
+    fn plate_pull_slope(
+        &self,
+        u: &[f64],
+        c: &Coefficients,
+        which: ParamId,
+        du: &[f64],
+        dp: f64,
+    ) -> Result<f64, EvalError> {
+        let film = &self.potential;
+        let (adhesion, length) = (c.adhesion, c.film);
+        energy::integrate_along(&self.mesh, u, du, c.plate, |at, x, d| {
+            let a = (x.s[1] * x.s[1] + x.z[1] * x.z[1]).sqrt();
+            let delta = -(x.z[0] - c.plate);
+            let f = film.jet(delta, adhesion, length);
+            let stretch = (x.s[1] * d.s[1] + x.z[1] * d.z[1]) / a;
+            let along = f.d1 * (a * d.s[0] + x.s[0] * stretch) - f.d2 * x.s[0] * a * d.z[0];
+            let direct = match which {
+                parameter::Z0 => f.d2,
+                parameter::ADHESION => film.by_adhesion(delta, adhesion, length).1,
+                parameter::FILM => film.by_length(delta, adhesion, length).1,
+                _ => Lanes::constant(0.0),
+            };
+            (along + direct * x.s[0] * a * dp) * at.weight
+        })
+    }
+}
+
+impl<F: Potential> Problem for ContactProblem<F> {
+    type Jacobian = SymmetricBand;
+
+    fn dim(&self) -> usize {
+        self.mesh.unknowns()
+    }
+
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    fn new_jacobian(&self) -> SymmetricBand {
+        SymmetricBand::new(self.dim(), HALF_BANDWIDTH)
+    }
+
+    fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
+        with_law!(self, |law| self.residual_as(&law, u, p, r))
+    }
+
+    fn jacobian(&self, u: &[f64], p: &[f64], j: &mut SymmetricBand) -> Result<(), EvalError> {
+        let mut scratch = self.volume_gradient.borrow_mut();
+        self.linearise(u, p, &mut scratch, j)
+    }
+
+    fn linearise(
+        &self,
+        u: &[f64],
+        p: &[f64],
+        r: &mut [f64],
+        j: &mut SymmetricBand,
+    ) -> Result<(), EvalError> {
+        with_law!(self, |law| self.linearise_as(&law, u, p, r, j))
+    }
+
+    fn parameter_derivative(
+        &self,
+        u: &[f64],
+        p: &[f64],
+        which: ParamId,
+        out: &mut [f64],
+    ) -> Result<(), EvalError> {
+        let (c, gas) = self.coefficients(u, p)?;
+        let mesh = &self.mesh;
+        let film = &self.potential;
+        let volume = energy::volume_gradient(mesh, u, out)?;
+        let by_excess = match which {
+            parameter::PRESSURE => gas.excess_by_ambient(volume),
+            parameter::SURFACE_TENSION => gas.excess_by_surface_tension(volume),
+            _ => 0.0,
+        };
+        for out in out.iter_mut() {
+            *out *= -by_excess;
+        }
+        let gap = |z: Lanes| -(z - c.plate);
+        match which {
+            parameter::Z0 => energy::add_gradient(mesh, u, c.plate, out, |at, x| {
+                let f = film.jet(gap(x.z[0]), c.adhesion, c.film);
+                density::area_gradient(f.d1, -f.d2, at, x)
+            }),
+            parameter::ADHESION => energy::add_gradient(mesh, u, c.plate, out, |at, x| {
+                let (w, d1) = film.by_adhesion(gap(x.z[0]), c.adhesion, c.film);
+                density::area_gradient(w, -d1, at, x)
+            }),
+            parameter::FILM => energy::add_gradient(mesh, u, c.plate, out, |at, x| {
+                let (w, d1) = film.by_length(gap(x.z[0]), c.adhesion, c.film);
+                density::area_gradient(w, -d1, at, x)
+            }),
+            parameter::BENDING => energy::add_gradient(mesh, u, c.plate, out, |at, x| {
+                density::bending_gradient(c.poisson, at, x)
+            }),
+            parameter::SURFACE_TENSION => energy::add_gradient(mesh, u, c.plate, out, |at, x| {
+                density::area_gradient(Lanes::constant(1.0), Lanes::ZERO, at, x)
+            }),
+            _ => energy::admissible(mesh, u, c.plate),
+        }
+    }
+
+    fn metric(&self, x: &[f64], y: &mut [f64]) {
+        self.mesh.mass().mul(x, y);
+    }
+
+    fn stability(&self) -> Stability {
+        Stability::EnergyHessian
+    }
+
+    fn observables(&self) -> &[&'static str] {
+        &observables::NAMES
+    }
+
+    fn observe(&self, u: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
+        let values = self.observation(u, p)?.to_array();
+        for (out, value) in out.iter_mut().zip(values) {
+            *out = value;
+        }
+        Ok(())
+    }
+
+    fn observable_slope(
+        &self,
+        k: usize,
+        u: &[f64],
+        p: &[f64],
+        which: ParamId,
+        du: &[f64],
+        dp: f64,
+    ) -> Result<Option<f64>, EvalError> {
+        let (c, gas) = self.coefficients(u, p)?;
+        let volume_slope = || {
+            energy::integrate_along(&self.mesh, u, du, c.plate, |at, x, d| {
+                let s = x.s[0];
+                -(s * (x.z[1] * d.s[0] + s * d.z[1] * 0.5) * at.weight)
+            })
+        };
+        match observables::NAMES.get(k).copied() {
+            Some("force") => {
+                let mut slope = self.plate_pull_slope(u, &c, which, du, dp)?;
+                if which == parameter::BENDING {
+                    let pull = observables::plate_pull(self, u, &c)?;
+                    slope -= 0.5 * pull * dp / c.bending;
+                }
+                Ok(Some(Self::force_factor(c.bending) * slope))
+            }
+            Some("pole_height") => Ok(Some(self.mesh.displacement_in(du, 0, 0.0)[0].1)),
+            Some("volume") => Ok(Some(4.0 * PI * volume_slope()?)),
+            Some("gas_pressure") => {
+                let volume = energy::volume(&self.mesh, u)?;
+                let direct = match which {
+                    parameter::PRESSURE => 1.0 + gas.excess_by_ambient(volume),
+                    parameter::SURFACE_TENSION => gas.excess_by_surface_tension(volume),
+                    _ => 0.0,
+                };
+                Ok(Some(direct * dp - gas.stiffness(volume) * volume_slope()?))
+            }
+            _ => Ok(None),
+        }
+    }
+}

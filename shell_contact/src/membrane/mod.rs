@@ -1,0 +1,114 @@
+//! Membrane energies per undeformed area, Eq. (6), in units of `χ`.
+//!
+//! A law is a function of the squared principal stretches `q = λ_s²` and `m = λ_φ²`, in which all
+//! three laws are rational: no root is taken and nothing is singular. All energies vanish at rest,
+//! and are written in the strains `q − 1` and `m − 1` so that small ones keep their digits.
+
+mod hooke;
+mod mooney_rivlin;
+mod skalak;
+
+pub use hooke::Hooke;
+pub use mooney_rivlin::MooneyRivlin;
+pub use skalak::Skalak;
+
+use crate::scalar::Scalar;
+
+/// Value and derivatives of a membrane energy in `(q, m)`.
+#[derive(Debug, Clone, Copy)]
+pub struct MembraneJet<T> {
+    /// Energy.
+    pub w: T,
+    /// `∂w/∂q`.
+    pub w_q: T,
+    /// `∂w/∂m`.
+    pub w_m: T,
+    /// `∂²w/∂q²`.
+    pub w_qq: T,
+    /// `∂²w/∂q∂m`.
+    pub w_qm: T,
+    /// `∂²w/∂m²`.
+    pub w_mm: T,
+}
+
+/// A membrane law.
+pub trait Membrane: Copy {
+    /// The energy alone.
+    fn energy<T: Scalar>(&self, q: T, m: T) -> T;
+    /// The energy and its first and second derivatives.
+    fn jet<T: Scalar>(&self, q: T, m: T) -> MembraneJet<T>;
+}
+
+/// Tensions `(τ_ss, τ_φφ)` per deformed length, Eq. (8), from the stretches
+/// (`(1/λ_φ) ∂w/∂λ_s` and `(1/λ_s) ∂w/∂λ_φ`; Hooke's law of Eq. (8a) as printed lacks a factor).
+pub fn tensions<L: Membrane>(law: &L, stretch_s: f64, stretch_phi: f64) -> (f64, f64) {
+    let jet = law.jet(stretch_s * stretch_s, stretch_phi * stretch_phi);
+    let tau_s = 2.0 * stretch_s * jet.w_q / stretch_phi;
+    let tau_phi = 2.0 * stretch_phi * jet.w_m / stretch_s;
+    (tau_s, tau_phi)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dual::{close, partials};
+
+    fn certify<L: Membrane>(law: L) {
+        for q in [0.3, 0.81, 1.0, 1.07, 2.5] {
+            for m in [0.4, 0.95, 1.0, 1.3] {
+                let jet = law.jet(q, m);
+                let d = partials([q, m], |x| law.energy(x[0], x[1]));
+                close(jet.w, d.value, 1e-12, 1e-15);
+                close(jet.w_q, d.gradient[0], 1e-12, 1e-15);
+                close(jet.w_m, d.gradient[1], 1e-12, 1e-15);
+                close(jet.w_qq, d.hessian[0][0], 1e-12, 1e-15);
+                close(jet.w_qm, d.hessian[0][1], 1e-12, 1e-15);
+                close(jet.w_mm, d.hessian[1][1], 1e-12, 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_agree_with_dual_numbers() {
+        certify(Hooke { poisson: 0.5 });
+        certify(Hooke { poisson: -0.2 });
+        certify(MooneyRivlin { b: 1.0 });
+        certify(MooneyRivlin { b: 0.0 });
+        certify(MooneyRivlin { b: 0.3 });
+        certify(Skalak { poisson: 0.0 });
+        certify(Skalak { poisson: 0.6 });
+    }
+
+    /// Young modulus one: at small strain all laws are Hooke's with their Poisson ratio.
+    #[test]
+    fn all_laws_linearise_to_hookes() {
+        let same = |a: MembraneJet<f64>, b: MembraneJet<f64>| {
+            close(a.w_qq, b.w_qq, 1e-14, 0.0);
+            close(a.w_qm, b.w_qm, 1e-14, 1e-16);
+            close(a.w_mm, b.w_mm, 1e-14, 0.0);
+            assert!(a.w == 0.0 && a.w_q.abs() < 1e-16 && a.w_m.abs() < 1e-16);
+        };
+        for b in [0.0, 0.4, 1.0] {
+            same(MooneyRivlin { b }.jet(1.0, 1.0), Hooke { poisson: 0.5 }.jet(1.0, 1.0));
+        }
+        for poisson in [0.0, 0.3, 0.8] {
+            same(Skalak { poisson }.jet(1.0, 1.0), Hooke { poisson }.jet(1.0, 1.0));
+        }
+    }
+
+    /// Eq. (8b) as printed, and Eq. (8a) with the factor it lacks.
+    #[test]
+    fn tensions_are_those_of_the_paper() {
+        let (ls, lp) = (1.13_f64, 0.92_f64);
+        let (b, j) = (0.7, ls * lp);
+        let (s, p) = tensions(&MooneyRivlin { b }, ls, lp);
+        let g = 1.0 / 3.0;
+        close(s, g / j * (ls * ls - 1.0 / (j * j)) * (1.0 + b * (lp * lp - 1.0)), 1e-13, 0.0);
+        close(p, g / j * (lp * lp - 1.0 / (j * j)) * (1.0 + b * (ls * ls - 1.0)), 1e-13, 0.0);
+        let nu = 0.3;
+        let (s, p) = tensions(&Hooke { poisson: nu }, ls, lp);
+        let g = 0.5 / (1.0 + nu) / (1.0 - nu);
+        close(s, g * ls / lp * (ls * ls - 1.0 + nu * (lp * lp - 1.0)), 1e-13, 0.0);
+        close(p, g * lp / ls * (lp * lp - 1.0 + nu * (ls * ls - 1.0)), 1e-13, 0.0);
+    }
+}
