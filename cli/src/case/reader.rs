@@ -97,7 +97,12 @@ impl Reader {
 
     /// Complain about a key that is not there.
     pub(crate) fn missing(&self, section: Section<'_>, key: &str, hint: impl Into<String>) {
-        self.push(section.origin, section.path(key), None, Complaint::Missing { hint: hint.into() });
+        self.push(
+            section.origin,
+            section.path(key),
+            None,
+            Complaint::Missing { hint: hint.into() },
+        );
     }
 
     /// Complain about anything.
@@ -234,7 +239,8 @@ impl Reader {
     ) -> Option<Quantity> {
         let node = section.get(key)?;
         let Value::Text(text) = &node.value else {
-            let expected = format!("a {dimension} with its unit such as \"{}\"", dimension.example());
+            let expected =
+                format!("a {dimension} with its unit such as \"{}\"", dimension.example());
             let hint = match node.value {
                 Value::Integer(_) | Value::Real(_) => "; add the unit, in quotes",
                 _ => "",

@@ -1,6 +1,6 @@
 //! From a tree of keys to a case: every key is checked, every default filled in.
 
-use super::document::{Table, Value};
+use super::document::Table;
 use super::error::{CaseError, Complaint};
 use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
 use super::reader::{ANY, Allowed, NOT_NEGATIVE, POSITIVE, Reader, Section};
@@ -234,7 +234,8 @@ impl<'a> Resolver<'a> {
             self.reader.refuse(section, "law", node, why);
         }
         let skalak = law == Some("skalak");
-        let poisson = self.or(section, "poisson", if skalak { POISSON_SKALAK } else { POISSON }, 0.5);
+        let poisson =
+            self.or(section, "poisson", if skalak { POISSON_SKALAK } else { POISSON }, 0.5);
         let b = self.reader.number(section, "b", FRACTION);
         let law = match law? {
             "hooke" => Law::Hooke,
@@ -364,7 +365,8 @@ impl<'a> Resolver<'a> {
     fn mesh(&self) -> Option<MeshCase> {
         let section = self.table("mesh", MESH);
         let elements = self.elements(section, ELEMENTS);
-        let grading = section.get("grading").map(|_| self.reader.number(section, "grading", GRADING));
+        let grading =
+            section.get("grading").map(|_| self.reader.number(section, "grading", GRADING));
         let grading = match grading {
             None => None,
             Some(value) => Some(value?),
@@ -424,13 +426,5 @@ impl<'a> Resolver<'a> {
             None => Some(default),
             Some(_) => self.reader.number(section, key, allowed),
         }
-    }
-}
-
-/// The problem that a tree names, if it names one at all.
-pub(crate) fn problem_name(tree: &Table) -> Option<&str> {
-    match &tree.get("problem")?.value {
-        Value::Text(text) => Some(text),
-        _ => None,
     }
 }

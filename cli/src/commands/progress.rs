@@ -55,7 +55,11 @@ impl Observer {
                 progress.points, progress.events, progress.parameter
             ));
         }
-        if self.stop.load(Ordering::SeqCst) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if self.stop.load(Ordering::SeqCst) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 
     /// Clear the line.

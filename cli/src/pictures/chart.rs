@@ -69,110 +69,135 @@ pub(super) struct Chart {
     pub(super) size: (u32, u32),
 }
 
-const LEFT: u32 = 92;
-const BOTTOM: u32 = 64;
-const RIGHT: u32 = 18;
-const TOP: u32 = 24;
-const TITLE: u32 = 30;
-const ROW: i32 = 24;
+/// Units of drawing per pixel. The library rounds to whole units; ten to a pixel keep curves
+/// smooth.
+const PX: i32 = 10;
+const BOTTOM: i32 = 58 * PX;
+const RIGHT: i32 = 18 * PX;
+const TOP: i32 = 18 * PX;
+const TITLE: i32 = 30 * PX;
+const ROW: i32 = 24 * PX;
+/// Width of a digit in the labels of ticks.
+const DIGIT: i32 = 9 * PX;
+/// Length of a dash, and of the gap after it.
+const DASH: i32 = 7 * PX;
+const GAP: i32 = 5 * PX;
 const FONT: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 const INK: RGBColor = RGBColor(30, 30, 30);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
-type Context<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+type Plot<'a> = DrawingArea<SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+/// The plotting area, in units of drawing.
+#[derive(Clone, Copy)]
+struct Frame {
+    left: i32,
+    top: i32,
+    right: i32,
+    bottom: i32,
+}
 
 impl Chart {
     /// The chart as SVG.
     pub(super) fn svg(&self) -> Result<String, DrawError> {
-        let top = TOP + if self.title.is_empty() { 0 } else { TITLE };
-        let legend = self.legend_width();
-        let width = LEFT + self.size.0 + RIGHT + legend;
-        let rows = 20 + ROW as u32 * self.legend.len() as u32;
-        let height = (top + self.size.1 + BOTTOM).max(top + rows);
+        let frame = self.frame();
+        let rows = 20 * PX + ROW * self.legend.len() as i32;
+        let width = (frame.right + RIGHT + self.legend_width()) as u32;
+        let height = (frame.bottom + BOTTOM).max(frame.top + rows) as u32;
         let mut svg = String::new();
         let outcome = {
             let root = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
-            self.draw(&root, top).and_then(|()| Ok(root.present()?))
+            self.draw(&root, frame).and_then(|()| Ok(root.present()?))
         };
         outcome.map_err(|error| DrawError {
             picture: self.y.title.clone(),
             detail: error.to_string(),
         })?;
-        Ok(svg)
+        let px = PX as u32;
+        let (fine, real) = (
+            format!("width=\"{width}\" height=\"{height}\""),
+            format!("width=\"{}\" height=\"{}\"", width / px, height / px),
+        );
+        Ok(svg.replacen(&fine, &format!("{real} stroke-linejoin=\"round\""), 1))
     }
 
-    fn legend_width(&self) -> u32 {
+    /// The plotting area: to the right of the widest label.
+    fn frame(&self) -> Frame {
+        let digits = self.y.ticks.iter().map(|tick| self.y.label(*tick).chars().count());
+        let left = 46 * PX + DIGIT * digits.max().unwrap_or(0) as i32;
+        let top = TOP + if self.title.is_empty() { 0 } else { TITLE };
+        let (width, height) = (self.size.0 as i32 * PX, self.size.1 as i32 * PX);
+        Frame { left, top, right: left + width, bottom: top + height }
+    }
+
+    fn legend_width(&self) -> i32 {
         let longest = self.legend.iter().map(|entry| match entry {
             Entry::Line { label, .. } => label.chars().count(),
             Entry::Marker { kind } => kind.chars().count(),
         });
-        longest.max().map_or(0, |chars| 62 + 8 * chars as u32)
+        longest.max().map_or(0, |chars| 62 * PX + 8 * PX * chars as i32)
     }
 
-    fn draw(&self, root: &Area<'_>, top: u32) -> Outcome {
+    fn draw(&self, root: &Area<'_>, frame: Frame) -> Outcome {
         root.fill(&WHITE)?;
         if !self.title.is_empty() {
             let style = text(19).pos(Pos::new(HPos::Left, VPos::Center));
-            root.draw(&Text::new(self.title.clone(), (LEFT as i32, top as i32 - 20), style))?;
+            let at = (frame.left, frame.top - 18 * PX);
+            root.draw(&Text::new(self.title.clone(), at, style))?;
         }
-        let (x, y) = (&self.x, &self.y);
-        let (width, height) = root.dim_in_pixel();
-        let rest = height - top - self.size.1 - BOTTOM;
-        let plot = root.clone().shrink((0, top), (LEFT + self.size.0, height - top));
-        let mut chart = ChartBuilder::on(&plot)
-            .set_label_area_size(LabelAreaPosition::Left, LEFT)
-            .set_label_area_size(LabelAreaPosition::Bottom, BOTTOM)
-            .margin_bottom(rest)
-            .build_cartesian_2d(x.low..x.high, y.low..y.high)?;
-        self.axes(&mut chart, root, top)?;
+        let plot =
+            root.clone().apply_coord_spec(Cartesian2d::<RangedCoordf64, RangedCoordf64>::new(
+                self.x.low..self.x.high,
+                self.y.low..self.y.high,
+                (frame.left..frame.right, frame.bottom..frame.top),
+            ));
+        self.axes(root, &plot, frame)?;
         for line in &self.lines {
-            draw_line(&mut chart, line)?;
+            draw_line(&plot, line)?;
         }
         for mark in self.marks.iter().filter(|mark| drawable(mark.x) && drawable(mark.y)) {
-            let at = chart.backend_coord(&(mark.x / x.unit, mark.y / y.unit));
+            let at = plot.map_coordinate(&(mark.x / self.x.unit, mark.y / self.y.unit));
             draw_marker(root, form(&mark.kind), at)?;
         }
-        let left = (LEFT + self.size.0 + RIGHT) as i32;
-        debug_assert!(left <= width as i32);
-        self.draw_legend(root, left, top as i32 + 12)
+        self.draw_legend(root, frame.right + RIGHT, frame.top + 12 * PX)
     }
 
-    /// Grid, frame, ticks, labels and titles. The library's own mesh cannot place ticks where
-    /// round numbers are, so all of it is drawn here.
-    fn axes(&self, chart: &mut Context<'_, '_>, root: &Area<'_>, top: u32) -> Outcome {
+    /// Grid, frame, ticks, labels and titles.
+    fn axes(&self, root: &Area<'_>, plot: &Plot<'_>, frame: Frame) -> Outcome {
         let (x, y) = (&self.x, &self.y);
-        let left = LEFT as i32;
-        let (right, above) = (left + self.size.0 as i32 - 1, top as i32);
-        let below = above + self.size.1 as i32 - 1;
-        let line = |from, to, style: ShapeStyle| root.draw(&PathElement::new([from, to], style));
+        let Frame { left, top, right, bottom } = frame;
+        let line = |from, to, color: RGBColor| {
+            root.draw(&PathElement::new([from, to], color.stroke_width(PX as u32)))
+        };
         for &tick in &x.ticks {
-            let at = chart.backend_coord(&(tick, y.low)).0;
-            line((at, above), (at, below), GRID.stroke_width(1))?;
-            line((at, below), (at, below + 6), INK.stroke_width(1))?;
+            let at = plot.map_coordinate(&(tick, y.low)).0;
+            line((at, top), (at, bottom), GRID)?;
+            line((at, bottom), (at, bottom + 6 * PX), INK)?;
             let style = text(15).pos(Pos::new(HPos::Center, VPos::Top));
-            root.draw(&Text::new(x.label(tick), (at, below + 10), style))?;
+            root.draw(&Text::new(x.label(tick), (at, bottom + 10 * PX), style))?;
         }
         for &tick in &y.ticks {
-            let at = chart.backend_coord(&(x.low, tick)).1;
-            line((left, at), (right, at), GRID.stroke_width(1))?;
-            line((left - 6, at), (left, at), INK.stroke_width(1))?;
+            let at = plot.map_coordinate(&(x.low, tick)).1;
+            line((left, at), (right, at), GRID)?;
+            line((left - 6 * PX, at), (left, at), INK)?;
             let style = text(15).pos(Pos::new(HPos::Right, VPos::Center));
-            root.draw(&Text::new(y.label(tick), (left - 10, at), style))?;
+            root.draw(&Text::new(y.label(tick), (left - 10 * PX, at), style))?;
         }
         if y.has_zero() {
-            let at = chart.backend_coord(&(x.low, 0.0)).1;
-            line((left, at), (right, at), FAINT.stroke_width(1))?;
+            let at = plot.map_coordinate(&(x.low, 0.0)).1;
+            line((left, at), (right, at), FAINT)?;
         }
-        root.draw(&Rectangle::new([(left, above), (right, below)], INK.stroke_width(1)))?;
+        // as a path: the library draws rectangles with thin lines only
+        let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
+        let around = [0, 1, 2, 3, 0, 1].map(|at| corners[at]);
+        root.draw(&PathElement::new(around, INK.stroke_width(PX as u32)))?;
         let style = text(17).pos(Pos::new(HPos::Center, VPos::Bottom));
-        let middle = ((left + right) / 2, below + BOTTOM as i32 - 6);
+        let middle = ((left + right) / 2, bottom + BOTTOM - 8 * PX);
         root.draw(&Text::new(x.title.clone(), middle, style))?;
-        let style = text(17)
-            .transform(FontTransform::Rotate270)
-            .pos(Pos::new(HPos::Center, VPos::Top));
-        let middle = (14, (above + below) / 2);
-        root.draw(&Text::new(y.title.clone(), middle, style))?;
+        let style =
+            text(17).transform(FontTransform::Rotate270).pos(Pos::new(HPos::Center, VPos::Top));
+        root.draw(&Text::new(y.title.clone(), (10 * PX, (top + bottom) / 2), style))?;
         Ok(())
     }
 
@@ -181,45 +206,41 @@ impl Chart {
             let y = top + ROW * row as i32;
             let label = match entry {
                 Entry::Line { color, dashed, label } => {
-                    let points = [(left, y), (left + 34, y)];
-                    let style = color.stroke_width(2);
+                    let points = [(left, y), (left + 34 * PX, y)];
+                    let style = color.stroke_width(2 * PX as u32);
                     if *dashed {
-                        root.draw(&DashedPathElement::new(points, 7, 5, style))?;
+                        root.draw(&DashedPathElement::new(points, DASH, GAP, style))?;
                     } else {
                         root.draw(&PathElement::new(points, style))?;
                     }
                     label
                 }
                 Entry::Marker { kind } => {
-                    draw_marker(root, form(kind), (left + 17, y))?;
+                    draw_marker(root, form(kind), (left + 17 * PX, y))?;
                     kind
                 }
             };
             let style = text(15).pos(Pos::new(HPos::Left, VPos::Center));
-            root.draw(&Text::new(label.clone(), (left + 44, y), style))?;
+            root.draw(&Text::new(label.clone(), (left + 44 * PX, y), style))?;
         }
         Ok(())
     }
 }
 
-fn text(size: u32) -> TextStyle<'static> {
-    TextStyle::from((FONT, size).into_font()).color(&INK)
+fn text(size: i32) -> TextStyle<'static> {
+    TextStyle::from((FONT, size * PX).into_font()).color(&INK)
 }
 
 /// A line, or a dot where a line has one point only.
-fn draw_line(chart: &mut Context<'_, '_>, line: &Line) -> Outcome {
-    let style = line.color.stroke_width(line.width);
+fn draw_line(plot: &Plot<'_>, line: &Line) -> Outcome {
+    let style = line.color.stroke_width(line.width * PX as u32);
     match line.points.as_slice() {
         [] => {}
-        [point] => {
-            chart.draw_series([Circle::new(*point, 3, line.color.filled())])?;
-        }
+        [point] => plot.draw(&Circle::new(*point, 3 * PX, line.color.filled()))?,
         points if line.dashed => {
-            chart.draw_series(DashedLineSeries::new(points.iter().copied(), 7, 5, style))?;
+            plot.draw(&DashedPathElement::new(points.iter().copied(), DASH, GAP, style))?;
         }
-        points => {
-            chart.draw_series([PathElement::new(points.to_vec(), style)])?;
-        }
+        points => plot.draw(&PathElement::new(points.to_vec(), style))?,
     }
     Ok(())
 }
@@ -227,22 +248,23 @@ fn draw_line(chart: &mut Context<'_, '_>, line: &Line) -> Outcome {
 /// A marker: black with a white rim, so that it stands out from its curve.
 fn draw_marker(root: &Area<'_>, form: Form, (x, y): (i32, i32)) -> Outcome {
     let polygon = |corners: &[(i32, i32)], fill: RGBColor| -> Outcome {
-        let corners: Vec<(i32, i32)> = corners.iter().map(|(a, b)| (x + a, y + b)).collect();
+        let corners: Vec<(i32, i32)> =
+            corners.iter().map(|(a, b)| (x + a * PX, y + b * PX)).collect();
         let mut rim = corners.clone();
         rim.extend(corners.iter().take(2).copied());
         root.draw(&Polygon::new(corners, fill.filled()))?;
         let edge = if fill == INK { WHITE } else { INK };
-        Ok(root.draw(&PathElement::new(rim, edge.stroke_width(1)))?)
+        Ok(root.draw(&PathElement::new(rim, edge.stroke_width(PX as u32)))?)
     };
     let diamond = [(0, -8), (7, 0), (0, 8), (-7, 0)];
     match form {
         Form::Disc => {
-            root.draw(&Circle::new((x, y), 6, WHITE.filled()))?;
-            Ok(root.draw(&Circle::new((x, y), 5, INK.filled()))?)
+            root.draw(&Circle::new((x, y), 6 * PX, WHITE.filled()))?;
+            Ok(root.draw(&Circle::new((x, y), 5 * PX, INK.filled()))?)
         }
         Form::Ring => {
-            root.draw(&Circle::new((x, y), 6, WHITE.filled()))?;
-            Ok(root.draw(&Circle::new((x, y), 5, INK.stroke_width(2)))?)
+            root.draw(&Circle::new((x, y), 6 * PX, WHITE.filled()))?;
+            Ok(root.draw(&Circle::new((x, y), 5 * PX, INK.stroke_width(2)))?)
         }
         Form::Square => polygon(&[(-6, -6), (6, -6), (6, 6), (-6, 6)], INK),
         Form::Up => polygon(&[(0, -8), (7, 5), (-7, 5)], INK),
@@ -252,8 +274,9 @@ fn draw_marker(root: &Area<'_>, form: Form, (x, y): (i32, i32)) -> Outcome {
         Form::Cross => {
             for (color, width) in [(WHITE, 4), (INK, 2)] {
                 for sign in [-1, 1] {
-                    let ends = [(x - 5, y - 5 * sign), (x + 5, y + 5 * sign)];
-                    root.draw(&PathElement::new(ends, color.stroke_width(width)))?;
+                    let (a, b) = (5 * PX, 5 * PX * sign);
+                    let ends = [(x - a, y - b), (x + a, y + b)];
+                    root.draw(&PathElement::new(ends, color.stroke_width(width * PX as u32)))?;
                 }
             }
             Ok(())

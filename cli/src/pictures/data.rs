@@ -123,9 +123,8 @@ impl Curve {
         if first == second {
             return first;
         }
-        let marked = |i: usize| {
-            self.marks.iter().any(|mark| mark.x == self.x[i] && mark.y == self.y[i])
-        };
+        let marked =
+            |i: usize| self.marks.iter().any(|mark| mark.x == self.x[i] && mark.y == self.y[i]);
         if marked(at) && !marked(at + 1) { second } else { first }
     }
 }
@@ -144,11 +143,7 @@ mod tests {
     }
 
     fn spans(curve: &Curve) -> Vec<(usize, usize, bool)> {
-        curve
-            .stretches()
-            .into_iter()
-            .map(|s| (s.points.start, s.points.end, s.unstable))
-            .collect()
+        curve.stretches().into_iter().map(|s| (s.points.start, s.points.end, s.unstable)).collect()
     }
 
     #[test]
