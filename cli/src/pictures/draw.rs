@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::chart::{Chart, DrawError, Entry, Line};
-use super::data::{Curve, Profile, Shape, drawable};
+use super::data::{Curve, Mark, Profile, Shape, drawable};
 use super::palette::{FAINT, of_quantity, of_state};
 use crate::case::document::shown;
 
@@ -58,10 +58,10 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
     };
     let wide = 1.08 * largest(&mut values(shapes, |s| &s.sigma)).max(1.0);
     let high = 1.08 * largest(&mut values(shapes, |s| &s.z).chain(plates));
-    // one unit is as long on both axes
-    let width = 480.0;
-    let height = (width * high / wide).clamp(120.0, 1500.0);
-    let high = wide * height / width;
+    // one unit is as long on both axes, as long as both fit
+    let scale = (480.0 / wide).min(1200.0 / high);
+    let (width, height) = ((wide * scale).max(120.0), (high * scale).max(120.0));
+    let (wide, high) = (width / scale, height / scale);
     let x = Axis::exactly("distance from the axis σ/R₀", -wide, wide, 6);
     let y = Axis::exactly("height z/R₀", -high, high, 6);
     let units = (x.unit, y.unit);
@@ -101,8 +101,9 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
 
 /// A chart of curves along a branch, with their special points.
 fn chart(title: &str, x: &str, y: &str, curves: &[Curve]) -> Chart {
-    let x = Axis::of(&shown(x), values(curves, |c| &c.x), 7);
-    let y = Axis::of(&shown(y), values(curves, |c| &c.y), 7);
+    let marks: Vec<Mark> = curves.iter().flat_map(|curve| curve.marks.clone()).collect();
+    let x = Axis::of(&shown(x), values(curves, |c| &c.x).chain(marks.iter().map(|m| m.x)), 7);
+    let y = Axis::of(&shown(y), values(curves, |c| &c.y).chain(marks.iter().map(|m| m.y)), 7);
     let lines = curves
         .iter()
         .flat_map(|curve| curve_lines(curve, of_quantity(&curve.label), (x.unit, y.unit)))
@@ -127,7 +128,6 @@ fn chart(title: &str, x: &str, y: &str, curves: &[Curve]) -> Chart {
             legend.push(Entry::Line { color: FAINT, dashed: true, label: "unstable".to_string() });
         }
     }
-    let marks: Vec<_> = curves.iter().flat_map(|curve| curve.marks.clone()).collect();
     let mut kinds: Vec<String> = Vec::new();
     for mark in marks.iter().filter(|mark| drawable(mark.x) && drawable(mark.y)) {
         let kind = shown(&mark.kind);
