@@ -44,7 +44,7 @@ pub(crate) struct CaseArguments {
     #[arg(value_name = "CASE.toml|NAME")]
     pub(crate) case: PathBuf,
     /// Number of elements, as --set mesh.elements=N
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) elements: Option<String>,
     /// Replace a value of the case, e.g. --set dimensionless.adhesion=3e-3; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]

@@ -1,4 +1,5 @@
 //! The program as people and scripts meet it: exit codes, what is created, what is printed.
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::fs;
 use std::path::Path;

@@ -2,7 +2,7 @@
 //!
 //! A case goes through four rooms: [`source`] finds its text (a file, a shipped case, a problem of
 //! the catalogue), [`document`] parses it and lays the overrides over it, [`resolve`] checks every
-//! key and fills in defaults, and [`write`] says the result as a case file again.
+//! key and fills in defaults, and [`mod@write`] says the result as a case file again.
 
 pub(crate) mod document;
 pub(crate) mod error;
@@ -53,7 +53,7 @@ pub(crate) struct ContactCase {
     /// The dimensionless groups, always present.
     pub(crate) groups: Groups,
     /// The physical parameters the groups came from, if the case gave those.
-    pub(crate) physical: Option<PhysicalCase>,
+    pub(crate) physical: Option<Box<PhysicalCase>>,
     /// The mesh.
     pub(crate) mesh: MeshCase,
 }

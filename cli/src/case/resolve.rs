@@ -118,15 +118,14 @@ impl<'a> Resolver<'a> {
         Some(LoadedCase { case, notes: self.notes })
     }
 
-    /// The name that a case gives itself; it names a folder, so it must be a plain word.
+    /// The name that a case gives itself; it names a folder.
     fn own_name(&self) -> Option<String> {
         let text = self.reader.text(self.root, "name")?;
-        let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | '+');
-        if !text.is_empty() && !text.starts_with('.') && text.chars().all(plain) {
+        if text == plain_name(text) {
             return Some(text.to_string());
         }
         let node = self.root.get("name")?;
-        let allowed = "a word of letters, digits, '-', '_', '+' and '.'".to_string();
+        let allowed = "a name fit for a folder: no slashes, no dot at its start".to_string();
         self.reader.refuse(self.root, "name", node, Complaint::OutOfRange { allowed });
         None
     }
@@ -276,7 +275,7 @@ impl<'a> Resolver<'a> {
         &self,
         section: Section<'_>,
         poisson: f64,
-    ) -> Option<(Groups, Option<PhysicalCase>)> {
+    ) -> Option<(Groups, Option<Box<PhysicalCase>>)> {
         let needed = |key, dimension, allowed| {
             self.reader.required_quantity(section, key, dimension, allowed)
         };
@@ -319,7 +318,7 @@ impl<'a> Resolver<'a> {
                 return None;
             }
         }
-        Some((groups, Some(physical)))
+        Some((groups, Some(Box::new(physical))))
     }
 
     /// Young's modulus and thickness, or the two moduli; not both, not halves of both.
@@ -427,4 +426,11 @@ impl<'a> Resolver<'a> {
             Some(_) => self.reader.number(section, key, allowed),
         }
     }
+}
+
+/// The nearest name that is fit for a folder.
+pub(super) fn plain_name(text: &str) -> String {
+    let awkward = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':');
+    let name = text.trim().trim_start_matches('.').replace(awkward, "_");
+    if name.is_empty() { "case".to_string() } else { name }
 }

@@ -1,7 +1,7 @@
 //! Where a case comes from: a file, a shipped case, or a problem of the catalogue.
 
 use super::document::{self, Override};
-use super::resolve::resolve;
+use super::resolve::{plain_name, resolve};
 use super::{CatalogueEntry, LoadError, LoadedCase};
 use crate::closest::closest;
 use std::fs::File;
@@ -49,10 +49,7 @@ pub(crate) fn load(
         return Err(LoadError::UnknownName { name: document::shown(&word), suggestion, known });
     }
     let text = read(what)?;
-    let name = match what.file_stem().map(|stem| stem.to_string_lossy().into_owned()) {
-        Some(stem) if !stem.is_empty() => stem,
-        _ => "case".to_string(),
-    };
+    let name = plain_name(&what.file_stem().unwrap_or_default().to_string_lossy());
     load_text(&word, &name, &text, overrides, catalogue)
 }
 

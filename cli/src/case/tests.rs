@@ -306,7 +306,7 @@ fn values_out_of_range() {
     says(&message, &["path.start = 1: must be different from path.end"]);
     says(
         &complaint("problem", "name = \"a/b\"\nproblem"),
-        &["line 1: name = \"a/b\": must be a word"],
+        &["line 1: name = \"a/b\": must be a name fit for a folder"],
     );
 }
 
@@ -422,6 +422,25 @@ fn files_that_cannot_be_read() {
     says(&complaint("long.toml"), &["not a case file"]);
     std::fs::write(place.path().join("mine.toml"), GOOD).unwrap();
     assert_eq!(load(&place.path().join("mine.toml"), &[], &[]).unwrap().case.name, "mine");
+}
+
+#[test]
+fn every_file_name_makes_a_name_that_a_case_may_give_itself() {
+    let place = tempfile::tempdir().unwrap();
+    let names = [
+        ("my case.toml", "my case"),
+        ("...toml", "case"),
+        (".hidden.toml", "hidden"),
+        ("a\nb:c.toml", "a_b_c"),
+        ("μ\"x.toml", "μ\"x"),
+    ];
+    for (file, name) in names {
+        let path = place.path().join(file);
+        std::fs::write(&path, GOOD).unwrap();
+        let case = load(&path, &[], &[]).unwrap().case;
+        assert_eq!(case.name, name);
+        assert_eq!(read(&case.to_toml()), case);
+    }
 }
 
 /// One random change of a text.

@@ -113,3 +113,84 @@ fn deliver(
         Exit::StoppedEarly
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arguments::{Arguments, Command};
+    use crate::case::{LoadedCase, load};
+    use crate::output::tests::example;
+    use clap::Parser;
+    use continuation::StopReason;
+    use std::fs;
+
+    fn arguments(more: &[&str]) -> TraceArguments {
+        let line = ["arclen", "trace", "fig12", "--quiet"].iter().chain(more);
+        match Arguments::try_parse_from(line).unwrap().command {
+            Command::Trace(arguments) => arguments,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn deliver_to(folder: &Path, more: &[&str], result: &TraceResult) -> Exit {
+        let LoadedCase { case, .. } = load("fig12".as_ref(), &[], &[]).unwrap();
+        let folder = Folder::check(folder, &[]).unwrap();
+        deliver(&arguments(more), &case, result, Some(&folder))
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_finished_trace_leaves_all_its_files() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("deep/out");
+        let mut result = example();
+        result.pictures = crate::pictures::tests::two_folds();
+        assert_eq!(deliver_to(&folder, &[], &result), Exit::Done);
+        let mut expected: Vec<&str> =
+            [TABLE, EVENTS, CASE].into_iter().chain(pictures::NAMES).collect();
+        expected.sort_unstable();
+        assert_eq!(names(&folder), expected);
+        let written = load(&folder.join(CASE), &[], &[]).unwrap();
+        assert_eq!(written, load("fig12".as_ref(), &[], &[]).unwrap());
+    }
+
+    #[test]
+    fn a_trace_that_stopped_early_leaves_its_files_and_exits_with_3() {
+        let place = tempfile::tempdir().unwrap();
+        let mut result = example();
+        for reason in [StopReason::Interrupted, StopReason::StepTooSmall, StopReason::MaxPoints] {
+            result.stopped_because = reason;
+            assert_eq!(deliver_to(place.path(), &["--no-pictures"], &result), Exit::StoppedEarly);
+            assert_eq!(names(place.path()), [TABLE, CASE, EVENTS]);
+            let json = fs::read_to_string(place.path().join(EVENTS)).unwrap();
+            assert!(json.contains(&format!("\"stopped_because\": \"{reason}\"")));
+        }
+    }
+
+    #[test]
+    fn a_folder_that_vanished_under_a_file_exits_with_1() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("out");
+        let checked = Folder::check(&folder, &[]).unwrap();
+        fs::write(&folder, "").unwrap();
+        let LoadedCase { case, .. } = load("fig12".as_ref(), &[], &[]).unwrap();
+        let exit = deliver(&arguments(&[]), &case, &example(), Some(&checked));
+        assert_eq!(exit, Exit::NotWritten);
+    }
+
+    #[test]
+    fn json_without_a_folder_writes_no_files() {
+        assert_eq!(folder(&arguments(&["--json"]), "fig12").unwrap(), None);
+        let place = folder(&arguments(&[]), "fig12").unwrap().unwrap();
+        assert_eq!(place.path(), Path::new("./arclen-out/fig12"));
+        let place = folder(&arguments(&["--json", "--out", "x"]), "fig12").unwrap().unwrap();
+        assert_eq!(place.path(), Path::new("x"));
+    }
+}

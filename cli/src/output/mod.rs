@@ -1,9 +1,9 @@
 //! What a trace hands over, and how it becomes files and tables.
 
 mod events;
-pub(crate) mod folder;
+mod folder;
 mod number;
-pub(crate) mod result;
+mod result;
 mod summary;
 mod table;
 
@@ -11,7 +11,9 @@ mod table;
 pub(crate) mod tests;
 
 pub(crate) use events::events_json;
-pub(crate) use folder::{Folder, FolderError};
-pub(crate) use result::{ContactRow, EventRecord, Pictures, Table, TraceResult};
+pub(crate) use folder::Folder;
+#[cfg_attr(not(test), expect(unused_imports, reason = "for the solvers behind `run`"))]
+pub(crate) use result::{ContactRow, EventRecord, Table};
+pub(crate) use result::{Pictures, TraceResult};
 pub(crate) use summary::summary;
 pub(crate) use table::branch_csv;

@@ -1,4 +1,5 @@
 //! A traced branch as plain numbers, free of solver and problem.
+#![cfg_attr(not(test), expect(dead_code, reason = "filled by the solvers behind `run`"))]
 
 use crate::pictures::{Curve, Profile, Shape};
 use continuation::StopReason;
@@ -54,26 +55,23 @@ pub(crate) struct Table {
 }
 
 impl Table {
+    /// An empty table with the given columns.
+    pub(crate) fn with_columns(columns: &[&str]) -> Self {
+        Table { columns: columns.iter().map(ToString::to_string).collect(), rows: Vec::new() }
+    }
+
     /// An empty table of a contact problem: the fixed columns, then `event`.
     pub(crate) fn contact() -> Self {
-        Table { columns: ContactRow::COLUMNS.map(str::to_string).to_vec(), rows: Vec::new() }
+        Self::with_columns(&ContactRow::COLUMNS)
     }
 
     /// An empty table of any other problem: `point`, the parameter, observables, `unstable`,
     /// `event`.
     pub(crate) fn general(parameter: &str, observables: &[&str]) -> Self {
-        let columns = ["point", parameter]
-            .into_iter()
-            .chain(observables.iter().copied())
-            .chain(["unstable", "event"])
-            .map(str::to_string)
-            .collect();
-        Table { columns, rows: Vec::new() }
-    }
-
-    /// An empty table with the given columns.
-    pub(crate) fn with_columns(columns: &[&str]) -> Self {
-        Table { columns: columns.iter().map(ToString::to_string).collect(), rows: Vec::new() }
+        let first = ["point", parameter].into_iter();
+        let columns: Vec<&str> =
+            first.chain(observables.iter().copied()).chain(["unstable", "event"]).collect();
+        Self::with_columns(&columns)
     }
 
     /// Add a row; a short one is filled up with empty cells, what is too long is cut.

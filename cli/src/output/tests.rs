@@ -139,7 +139,7 @@ fn the_summary_lines_up() {
 }
 
 mod folders {
-    use super::super::{Folder, FolderError};
+    use super::super::folder::{Folder, FolderError};
     use std::fs;
 
     #[test]

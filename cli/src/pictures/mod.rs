@@ -10,10 +10,12 @@ mod draw;
 mod palette;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub(crate) use chart::DrawError;
-pub(crate) use data::{Curve, Mark, Profile, Shape};
+#[cfg_attr(not(test), expect(unused_imports, reason = "for the solvers behind `run`"))]
+pub(crate) use data::Mark;
+pub(crate) use data::{Curve, Profile, Shape};
 
 use crate::output::Pictures;
 
