@@ -1,2 +1,30 @@
-//! The binary `arclen`.
-fn main() {}
+//! The binary `arclen`: bifurcation diagrams from the command line.
+//!
+//! `arguments` says what may be asked, `commands` does it; between them, `case` turns a case file
+//! into a checked case, `run` traces it, `output` and `pictures` turn the result into files.
+
+mod arguments;
+mod case;
+mod closest;
+mod commands;
+mod exit;
+mod output;
+mod pictures;
+mod run;
+mod terminal;
+mod units;
+
+use arguments::Arguments;
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match Arguments::try_parse() {
+        Ok(arguments) => commands::dispatch(&arguments).into(),
+        Err(message) => {
+            // help and version come this way too; a closed pipe is no reason to complain
+            let _ = message.print();
+            if message.use_stderr() { exit::Exit::BadInput } else { exit::Exit::Done }.into()
+        }
+    }
+}

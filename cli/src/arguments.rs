@@ -1,0 +1,80 @@
+//! The command line.
+
+use crate::case::Override;
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
+use std::path::PathBuf;
+
+/// Bifurcation diagrams: branches of solutions followed around their folds.
+#[derive(Debug, Parser)]
+#[command(
+    name = "arclen",
+    version,
+    propagate_version = true,
+    arg_required_else_help = true,
+    after_help = "Exit codes: 0 done; 1 the results could not be written; 2 usage or input error, \
+                  nothing created; 3 stopped early, files complete for what was computed."
+)]
+pub(crate) struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Follow a branch; write its points, special points and pictures
+    Trace(TraceArguments),
+    /// Print a case with every default written out, or say what is wrong with it
+    Check(CaseArguments),
+    /// List the cases and problems that have names
+    List,
+    /// Print a completion script for a shell
+    Completions {
+        /// Which shell
+        shell: Shell,
+    },
+}
+
+/// Which case.
+#[derive(Debug, Args)]
+pub(crate) struct CaseArguments {
+    /// A case file, or a name from "arclen list"
+    #[arg(value_name = "CASE.toml|NAME")]
+    pub(crate) case: PathBuf,
+    /// Number of elements, as --set mesh.elements=N
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) elements: Option<String>,
+    /// Replace a value of the case, e.g. --set dimensionless.adhesion=3e-3; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+}
+
+impl CaseArguments {
+    /// The overrides, in the order in which they are applied.
+    pub(crate) fn overrides(&self) -> Vec<Override> {
+        let set = self.set.iter().map(|text| Override::set(text));
+        set.chain(self.elements.iter().map(|count| Override::elements(count))).collect()
+    }
+}
+
+/// Which case, and what to do with its branch.
+#[derive(Debug, Args)]
+pub(crate) struct TraceArguments {
+    /// Which case.
+    #[command(flatten)]
+    pub(crate) case: CaseArguments,
+    /// Folder for the results, made if missing [default: ./arclen-out/CASE]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print events.json on standard output; without --out, write no files
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Draw no pictures
+    #[arg(long)]
+    pub(crate) no_pictures: bool,
+    /// No progress, no summary, no notes
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}

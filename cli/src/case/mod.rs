@@ -1,0 +1,190 @@
+//! Case files: what they may say, what is wrong with them, and what they resolve to.
+//!
+//! A case goes through four rooms: [`source`] finds its text (a file, a shipped case, a problem of
+//! the catalogue), [`document`] parses it and lays the overrides over it, [`resolve`] checks every
+//! key and fills in defaults, and [`mod@write`] says the result as a case file again.
+
+pub(crate) mod document;
+pub(crate) mod error;
+mod physical;
+mod reader;
+mod resolve;
+pub(crate) mod source;
+mod write;
+
+#[cfg(test)]
+mod tests;
+
+pub(crate) use document::Override;
+pub(crate) use error::LoadError;
+pub(crate) use physical::{PhysicalCase, Stiffness};
+pub(crate) use source::{SHIPPED, load};
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// A case with every default filled in and every value checked.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ResolvedCase {
+    /// Name of the case: of its file, or as it says itself.
+    pub(crate) name: String,
+    /// What is solved.
+    pub(crate) problem: ProblemCase,
+    /// Which part of the branch is traced.
+    pub(crate) path: PathCase,
+}
+
+/// What is solved.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum ProblemCase {
+    /// A coated microbubble between two plates; the parameter is the plate distance `z0`.
+    Contact(ContactCase),
+    /// A shell under a ring load; the parameter is the contact angle `alpha` in degrees.
+    RingLoad(RingLoadCase),
+    /// A problem of the catalogue, by name.
+    Catalogue(CatalogueCase),
+}
+
+/// A microbubble between two plates.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ContactCase {
+    /// The shell's material.
+    pub(crate) shell: ShellCase,
+    /// The dimensionless groups, always present.
+    pub(crate) groups: Groups,
+    /// The physical parameters the groups came from, if the case gave those.
+    pub(crate) physical: Option<Box<PhysicalCase>>,
+    /// The mesh.
+    pub(crate) mesh: MeshCase,
+}
+
+/// A shell under a ring load.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RingLoadCase {
+    /// The shell's material.
+    pub(crate) shell: ShellCase,
+    /// `k_b / (chi R0²)`.
+    pub(crate) bending: f64,
+    /// `P_A R0 / chi`.
+    pub(crate) pressure: f64,
+    /// The mesh.
+    pub(crate) mesh: MeshCase,
+}
+
+/// A problem of the catalogue.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CatalogueCase {
+    /// Its name.
+    pub(crate) name: String,
+    /// Its parameters by name, the continued one not among them.
+    pub(crate) parameters: BTreeMap<String, f64>,
+    /// Number of elements, for problems that have a mesh.
+    pub(crate) elements: Option<usize>,
+}
+
+/// A shell's material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ShellCase {
+    /// The law of the membrane.
+    pub(crate) law: Law,
+    /// Poisson's ratio.
+    pub(crate) poisson: f64,
+}
+
+/// The law of the membrane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Law {
+    /// Hooke's law.
+    Hooke,
+    /// Mooney-Rivlin, strain softening.
+    MooneyRivlin {
+        /// 0 is neo-Hookean, 1 the other end of the law.
+        b: f64,
+    },
+    /// Skalak, strain hardening.
+    Skalak,
+}
+
+impl Law {
+    /// The names that a case file may use.
+    pub(crate) const NAMES: [&'static str; 3] = ["hooke", "mooney-rivlin", "skalak"];
+}
+
+impl fmt::Display for Law {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Law::Hooke => Law::NAMES[0],
+            Law::MooneyRivlin { .. } => Law::NAMES[1],
+            Law::Skalak => Law::NAMES[2],
+        })
+    }
+}
+
+/// The dimensionless groups of the contact problem.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Groups {
+    /// `k_b / (chi R0²)`.
+    pub(crate) bending: f64,
+    /// `P_A R0 / chi`.
+    pub(crate) pressure: f64,
+    /// `w0 / chi`.
+    pub(crate) adhesion: f64,
+    /// `delta_A / R0`.
+    pub(crate) film: f64,
+    /// `gamma_BW / chi`.
+    pub(crate) surface_tension: f64,
+    /// The polytropic exponent of the gas.
+    pub(crate) gas_exponent: f64,
+}
+
+/// The mesh along the meridian.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct MeshCase {
+    /// Number of elements.
+    pub(crate) elements: usize,
+    /// Longest element over shortest, shrinking towards the pole; uniform without it.
+    pub(crate) grading: Option<f64>,
+}
+
+/// Which part of the branch is traced.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PathCase {
+    /// Where the continued parameter starts.
+    pub(crate) start: f64,
+    /// Where it ends.
+    pub(crate) end: f64,
+    /// Longest step, as arclength in the problem's metric; the tracer's default without it.
+    pub(crate) max_step: Option<f64>,
+    /// Shortest step, likewise.
+    pub(crate) min_step: Option<f64>,
+    /// Largest number of points.
+    pub(crate) max_points: usize,
+}
+
+/// What the command line needs to know about a problem of the catalogue.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CatalogueEntry {
+    /// Its name on the command line and in case files.
+    pub(crate) name: String,
+    /// One line for people.
+    pub(crate) summary: String,
+    /// Name of the continued parameter.
+    pub(crate) parameter: String,
+    /// Where the continued parameter starts by default.
+    pub(crate) start: f64,
+    /// Where it ends by default.
+    pub(crate) end: f64,
+    /// The other parameters with their defaults.
+    pub(crate) parameters: Vec<(String, f64)>,
+    /// Number of elements by default, for problems that have a mesh.
+    pub(crate) elements: Option<usize>,
+}
+
+/// A case, and what deserves to be said about it though it is not wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LoadedCase {
+    /// The case.
+    pub(crate) case: ResolvedCase,
+    /// Remarks for people.
+    pub(crate) notes: Vec<String>,
+}

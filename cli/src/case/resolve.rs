@@ -1,0 +1,436 @@
+//! From a tree of keys to a case: every key is checked, every default filled in.
+
+use super::document::Table;
+use super::error::{CaseError, Complaint};
+use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
+use super::reader::{ANY, Allowed, NOT_NEGATIVE, POSITIVE, Reader, Section};
+use super::{
+    CatalogueCase, CatalogueEntry, ContactCase, Groups, Law, LoadedCase, MeshCase, PathCase,
+    ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
+};
+use crate::closest::closest;
+use crate::units::{self, Dimension};
+
+const SHELL: &[&str] = &["law", "poisson", "b"];
+const DIMENSIONLESS: &[&str] =
+    &["bending", "pressure", "adhesion", "film", "surface_tension", "gas_exponent"];
+const RING_GROUPS: &[&str] = &["bending", "pressure"];
+const PHYSICAL: &[&str] = &[
+    "radius",
+    "young",
+    "thickness",
+    "chi",
+    "bending",
+    "pressure",
+    "adhesion",
+    "film",
+    "surface_tension",
+    "gas_exponent",
+];
+const MESH: &[&str] = &["elements", "grading"];
+const PATH: &[&str] = &["start", "end", "max_step", "min_step", "max_points"];
+
+/// Where a key may be at home, for those that stand in the wrong table.
+const HOMES: &[(&str, &[&str])] = &[
+    ("shell", SHELL),
+    ("dimensionless", DIMENSIONLESS),
+    ("physical", PHYSICAL),
+    ("mesh", MESH),
+    ("path", PATH),
+];
+
+const GAS_EXPONENT: f64 = 1.07;
+const ELEMENTS: usize = 400;
+const MAX_POINTS: usize = 5000;
+
+const POISSON: Allowed =
+    Allowed { holds: |x| x > -1.0 && x <= 0.5, words: "greater than -1 and at most 0.5" };
+const POISSON_SKALAK: Allowed =
+    Allowed { holds: |x| x > -1.0 && x < 1.0, words: "between -1 and 1 (C = nu/(1 - nu))" };
+const FRACTION: Allowed = Allowed { holds: |x| (0.0..=1.0).contains(&x), words: "from 0 to 1" };
+const GRADING: Allowed =
+    Allowed { holds: |x| (1.0..=1000.0).contains(&x), words: "from 1 (uniform) to 1000" };
+const CONTACT_START: Allowed = Allowed {
+    holds: |x| x > 1.0,
+    words: "greater than 1: a contact case starts above the free shell, of radius 1",
+};
+const ANGLE: Allowed =
+    Allowed { holds: |x| x > 0.0 && x < 90.0, words: "an angle between 0 and 90 degrees" };
+
+/// Check a tree and fill in the defaults; `name` is the case's name unless it says one itself.
+///
+/// # Errors
+/// Everything that is wrong with it, in order of appearance.
+pub(crate) fn resolve(
+    file: &str,
+    name: &str,
+    tree: &Table,
+    catalogue: &[CatalogueEntry],
+) -> Result<LoadedCase, Vec<CaseError>> {
+    let reader = Reader::new(file);
+    let resolver =
+        Resolver { reader: &reader, root: Section::root(tree), notes: Vec::new(), catalogue };
+    let loaded = resolver.run(name);
+    match loaded {
+        Some(loaded) if reader.is_content() => Ok(loaded),
+        _ => Err(reader.into_errors()),
+    }
+}
+
+struct Resolver<'a> {
+    reader: &'a Reader,
+    root: Section<'a>,
+    notes: Vec<String>,
+    catalogue: &'a [CatalogueEntry],
+}
+
+impl<'a> Resolver<'a> {
+    fn run(mut self, default_name: &str) -> Option<LoadedCase> {
+        let name = match self.root.get("name") {
+            None => Some(default_name.to_string()),
+            Some(_) => self.own_name(),
+        };
+        let known: Vec<&str> = ["contact", "ring-load"]
+            .into_iter()
+            .chain(self.catalogue.iter().map(|entry| entry.name.as_str()))
+            .collect();
+        if self.root.get("problem").is_none() {
+            let hint = format!("write problem = \"contact\", or one of {}", known.join(", "));
+            self.reader.missing(self.root, "problem", hint);
+        }
+        let problem = self.reader.text(self.root, "problem")?;
+        let (problem, path) = match problem {
+            "contact" => self.contact(),
+            "ring-load" => self.ring_load(),
+            other => match self.catalogue.iter().find(|entry| entry.name == other) {
+                Some(entry) => self.entry(entry),
+                None => {
+                    let node = self.root.get("problem")?;
+                    let suggestion = closest(other, known.iter().copied()).map(str::to_string);
+                    let allowed = known.iter().map(ToString::to_string).collect();
+                    let why = Complaint::UnknownWord { allowed, suggestion };
+                    self.reader.refuse(self.root, "problem", node, why);
+                    return None;
+                }
+            },
+        };
+        let case = ResolvedCase { name: name?, problem: problem?, path: path? };
+        Some(LoadedCase { case, notes: self.notes })
+    }
+
+    /// The name that a case gives itself; it names a folder.
+    fn own_name(&self) -> Option<String> {
+        let text = self.reader.text(self.root, "name")?;
+        if text == plain_name(text) {
+            return Some(text.to_string());
+        }
+        let node = self.root.get("name")?;
+        let allowed = "a name fit for a folder: no slashes, no dot at its start".to_string();
+        self.reader.refuse(self.root, "name", node, Complaint::OutOfRange { allowed });
+        None
+    }
+
+    /// A table whose keys are all known.
+    fn table(&self, name: &'static str, allowed: &[&str]) -> Section<'a> {
+        let section = self.reader.section(self.root, name);
+        self.reader.only(section, allowed, HOMES);
+        section
+    }
+
+    fn contact(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
+        let tables = ["name", "problem", "shell", "dimensionless", "physical", "mesh", "path"];
+        self.reader.only(self.root, &tables, HOMES);
+        let shell = self.shell();
+        let dimensionless = self.table("dimensionless", DIMENSIONLESS);
+        let physical = self.table("physical", PHYSICAL);
+        let poisson = shell.map_or(0.5, |shell| shell.poisson);
+        let parameters = match (dimensionless.exists(), physical.exists()) {
+            (true, false) => self.groups(dimensionless).map(|groups| (groups, None)),
+            (false, true) => self.physical(physical, poisson),
+            (true, true) => {
+                let why = "the case has both [dimensionless] and [physical]; keep one of them";
+                let place = dimensionless.origin.max(physical.origin);
+                let name =
+                    if place == physical.origin { "physical" } else { "dimensionless" }.to_string();
+                self.reader.push(place, name, None, Complaint::Conflict(why.to_string()));
+                None
+            }
+            (false, false) => {
+                let hint = "give the parameters in a table [dimensionless] or [physical]";
+                self.reader.missing(self.root, "dimensionless", hint);
+                None
+            }
+        };
+        let mesh = self.mesh();
+        let path = self.path(None, CONTACT_START, POSITIVE);
+        let problem = match (shell, parameters, mesh) {
+            (Some(shell), Some((groups, physical)), Some(mesh)) => {
+                Some(ProblemCase::Contact(ContactCase { shell, groups, physical, mesh }))
+            }
+            _ => None,
+        };
+        (problem, path)
+    }
+
+    fn ring_load(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
+        let tables = ["name", "problem", "shell", "dimensionless", "mesh", "path"];
+        self.reader.only(self.root, &tables, HOMES);
+        let shell = self.shell();
+        let groups = self.table("dimensionless", RING_GROUPS);
+        let bending = self.reader.required(groups, "bending", POSITIVE);
+        let pressure = self.or(groups, "pressure", NOT_NEGATIVE, 0.0);
+        let mesh = self.mesh();
+        let path = self.path(None, ANGLE, ANGLE);
+        let problem = match (shell, bending, pressure, mesh) {
+            (Some(shell), Some(bending), Some(pressure), Some(mesh)) => {
+                Some(ProblemCase::RingLoad(RingLoadCase { shell, bending, pressure, mesh }))
+            }
+            _ => None,
+        };
+        (problem, path)
+    }
+
+    fn entry(&mut self, entry: &CatalogueEntry) -> (Option<ProblemCase>, Option<PathCase>) {
+        self.reader.only(self.root, &["name", "problem", "parameters", "mesh", "path"], HOMES);
+        let section = self.reader.section(self.root, "parameters");
+        let allowed: Vec<&str> = entry.parameters.iter().map(|(name, _)| name.as_str()).collect();
+        self.reader.only(section, &allowed, &[("path", &[entry.parameter.as_str()])]);
+        let parameters = entry
+            .parameters
+            .iter()
+            .map(|(name, default)| Some((name.clone(), self.or(section, name, ANY, *default)?)))
+            .collect::<Option<_>>();
+        let mesh = self.table("mesh", if entry.elements.is_some() { &["elements"] } else { &[] });
+        let elements = match entry.elements {
+            None => Some(None),
+            Some(default) => self.elements(mesh, default).map(Some),
+        };
+        let path = self.path(Some((entry.start, entry.end)), ANY, ANY);
+        let problem = match (parameters, elements) {
+            (Some(parameters), Some(elements)) => Some(ProblemCase::Catalogue(CatalogueCase {
+                name: entry.name.clone(),
+                parameters,
+                elements,
+            })),
+            _ => None,
+        };
+        (problem, path)
+    }
+
+    fn shell(&mut self) -> Option<ShellCase> {
+        let section = self.table("shell", SHELL);
+        if section.get("law").is_none() {
+            let hint = format!("give the law of the membrane: {}", Law::NAMES.join(", "));
+            self.reader.missing(section, "law", hint);
+        }
+        let law = self.reader.text(section, "law");
+        if let (Some(word), Some(node)) = (law, section.get("law"))
+            && !Law::NAMES.contains(&word)
+        {
+            let suggestion = closest(word, Law::NAMES).map(ToString::to_string);
+            let allowed = Law::NAMES.iter().map(ToString::to_string).collect();
+            let why = Complaint::UnknownWord { allowed, suggestion };
+            self.reader.refuse(section, "law", node, why);
+        }
+        let skalak = law == Some("skalak");
+        let poisson =
+            self.or(section, "poisson", if skalak { POISSON_SKALAK } else { POISSON }, 0.5);
+        let b = self.reader.number(section, "b", FRACTION);
+        let law = match law? {
+            "hooke" => Law::Hooke,
+            "skalak" => Law::Skalak,
+            "mooney-rivlin" => {
+                if section.get("b").is_none() {
+                    let hint = "mooney-rivlin needs b, from 0 (neo-Hookean) to 1";
+                    self.reader.missing(section, "b", hint);
+                }
+                Law::MooneyRivlin { b: b? }
+            }
+            _ => return None,
+        };
+        if b.is_some() && !matches!(law, Law::MooneyRivlin { .. }) {
+            self.notes.push(format!("shell.b has no effect: {law} has no such parameter"));
+        }
+        Some(ShellCase { law, poisson: poisson? })
+    }
+
+    fn groups(&self, section: Section<'_>) -> Option<Groups> {
+        let bending = self.reader.required(section, "bending", POSITIVE);
+        let pressure = self.reader.required(section, "pressure", NOT_NEGATIVE);
+        let adhesion = self.reader.required(section, "adhesion", POSITIVE);
+        let film = self.reader.required(section, "film", POSITIVE);
+        let surface_tension = self.or(section, "surface_tension", NOT_NEGATIVE, 0.0);
+        let gas_exponent = self.or(section, "gas_exponent", NOT_NEGATIVE, GAS_EXPONENT);
+        Some(Groups {
+            bending: bending?,
+            pressure: pressure?,
+            adhesion: adhesion?,
+            film: film?,
+            surface_tension: surface_tension?,
+            gas_exponent: gas_exponent?,
+        })
+    }
+
+    fn physical(
+        &self,
+        section: Section<'_>,
+        poisson: f64,
+    ) -> Option<(Groups, Option<Box<PhysicalCase>>)> {
+        let needed = |key, dimension, allowed| {
+            self.reader.required_quantity(section, key, dimension, allowed)
+        };
+        let radius = needed("radius", Dimension::Length, POSITIVE);
+        let stiffness = self.stiffness(section);
+        let pressure = needed("pressure", Dimension::Pressure, NOT_NEGATIVE);
+        let adhesion = needed("adhesion", Dimension::Tension, POSITIVE);
+        let film = needed("film", Dimension::Length, POSITIVE);
+        let surface_tension = if section.get("surface_tension").is_some() {
+            needed("surface_tension", Dimension::Tension, NOT_NEGATIVE)
+        } else {
+            units::parse("0 N/m", Dimension::Tension).ok()
+        };
+        let gas_exponent = self.or(section, "gas_exponent", NOT_NEGATIVE, GAS_EXPONENT);
+        let physical = PhysicalCase {
+            radius: radius?,
+            stiffness: stiffness?,
+            pressure: pressure?,
+            adhesion: adhesion?,
+            film: film?,
+            surface_tension: surface_tension?,
+            gas_exponent: gas_exponent?,
+        };
+        let groups = dimensionless_of_physical(&physical, poisson);
+        let checks = [
+            ("bending", groups.bending, POSITIVE),
+            ("pressure", groups.pressure, NOT_NEGATIVE),
+            ("adhesion", groups.adhesion, POSITIVE),
+            ("film", groups.film, POSITIVE),
+            ("surface_tension", groups.surface_tension, NOT_NEGATIVE),
+        ];
+        for (key, value, allowed) in checks {
+            if !(value.is_finite() && (allowed.holds)(value)) {
+                let why = Complaint::Conflict(format!(
+                    "these parameters make the dimensionless {key} {value:?}, which must be {}; \
+                     check their units",
+                    allowed.words
+                ));
+                self.reader.push(section.origin, "physical".to_string(), None, why);
+                return None;
+            }
+        }
+        Some((groups, Some(Box::new(physical))))
+    }
+
+    /// Young's modulus and thickness, or the two moduli; not both, not halves of both.
+    fn stiffness(&self, section: Section<'_>) -> Option<Stiffness> {
+        let given: Vec<&str> = ["young", "thickness", "chi", "bending"]
+            .into_iter()
+            .filter(|key| section.get(key).is_some())
+            .collect();
+        let quantity =
+            |key, dimension| self.reader.required_quantity(section, key, dimension, POSITIVE);
+        let homogeneous = given.iter().any(|key| matches!(*key, "young" | "thickness"));
+        let moduli = given.iter().any(|key| matches!(*key, "chi" | "bending"));
+        match (homogeneous, moduli) {
+            (true, false) => {
+                let young = quantity("young", Dimension::Pressure);
+                let thickness = quantity("thickness", Dimension::Length);
+                Some(Stiffness::Homogeneous { young: young?, thickness: thickness? })
+            }
+            (false, true) => {
+                let chi = quantity("chi", Dimension::Tension);
+                let bending = quantity("bending", Dimension::Moment);
+                Some(Stiffness::Moduli { chi: chi?, bending: bending? })
+            }
+            (true, true) => {
+                let why = format!(
+                    "has {}; give either young and thickness, or chi and bending",
+                    given.join(", ")
+                );
+                let place = given.iter().filter_map(|key| section.get(key)).map(|n| n.origin).max();
+                let place = place.unwrap_or(section.origin);
+                self.reader.push(place, "physical".to_string(), None, Complaint::Conflict(why));
+                None
+            }
+            (false, false) => {
+                let hint = "give young and thickness (\"2.1 GPa\", \"25 nm\"), \
+                            or chi and bending (\"0.05 N/m\", \"3e-16 N m\")";
+                self.reader.missing(section, "young", hint);
+                None
+            }
+        }
+    }
+
+    fn mesh(&self) -> Option<MeshCase> {
+        let section = self.table("mesh", MESH);
+        let elements = self.elements(section, ELEMENTS);
+        let grading =
+            section.get("grading").map(|_| self.reader.number(section, "grading", GRADING));
+        let grading = match grading {
+            None => None,
+            Some(value) => Some(value?),
+        };
+        Some(MeshCase { elements: elements?, grading })
+    }
+
+    fn elements(&self, section: Section<'_>, default: usize) -> Option<usize> {
+        match section.get("elements") {
+            None => Some(default),
+            Some(_) => self.reader.count(section, "elements", 8, 100_000),
+        }
+    }
+
+    fn path(
+        &self,
+        default: Option<(f64, f64)>,
+        start_range: Allowed,
+        end_range: Allowed,
+    ) -> Option<PathCase> {
+        let section = self.table("path", PATH);
+        let needed = |key: &str, allowed: Allowed, default: Option<f64>| match default {
+            Some(default) => self.or(section, key, allowed, default),
+            None => self.reader.required(section, key, allowed),
+        };
+        let start = needed("start", start_range, default.map(|(start, _)| start));
+        let end = needed("end", end_range, default.map(|(_, end)| end));
+        let max_step = self.reader.number(section, "max_step", POSITIVE);
+        let min_step = self.reader.number(section, "min_step", POSITIVE);
+        let max_points = match section.get("max_points") {
+            None => Some(MAX_POINTS),
+            Some(_) => self.reader.count(section, "max_points", 2, 10_000_000),
+        };
+        if let (Some(start), Some(end), Some(node)) = (start, end, section.get("end"))
+            && start == end
+        {
+            let allowed = format!("different from path.start, which is {start:?} too");
+            self.reader.refuse(section, "end", node, Complaint::OutOfRange { allowed });
+        } else if let (Some(start), Some(end), Some(node)) = (start, end, section.get("start"))
+            && start == end
+        {
+            let allowed = format!("different from path.end, which is {end:?} by default");
+            self.reader.refuse(section, "start", node, Complaint::OutOfRange { allowed });
+        }
+        if let (Some(low), Some(high), Some(node)) = (min_step, max_step, section.get("min_step"))
+            && low > high
+        {
+            let allowed = format!("at most path.max_step, which is {high:?}");
+            self.reader.refuse(section, "min_step", node, Complaint::OutOfRange { allowed });
+        }
+        Some(PathCase { start: start?, end: end?, max_step, min_step, max_points: max_points? })
+    }
+
+    /// A number with a default; `None` only when the number given is wrong.
+    fn or(&self, section: Section<'_>, key: &str, allowed: Allowed, default: f64) -> Option<f64> {
+        match section.get(key) {
+            None => Some(default),
+            Some(_) => self.reader.number(section, key, allowed),
+        }
+    }
+}
+
+/// The nearest name that is fit for a folder.
+pub(super) fn plain_name(text: &str) -> String {
+    let awkward = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':');
+    let name = text.trim().trim_start_matches('.').replace(awkward, "_");
+    if name.is_empty() { "case".to_string() } else { name }
+}

@@ -1,0 +1,154 @@
+//! A resolved case as a case file again: everything written out, nothing left to defaults.
+
+use super::{ContactCase, Groups, MeshCase, PathCase, ProblemCase, ResolvedCase, ShellCase};
+use super::{Law, PhysicalCase, Stiffness};
+use std::fmt::Write as _;
+
+impl ResolvedCase {
+    /// The case as TOML; reading it gives the same case again.
+    pub(crate) fn to_toml(&self) -> String {
+        let mut out = Lines(String::new());
+        out.line("# Resolved case: every default is written out.");
+        out.text("name", &self.name);
+        match &self.problem {
+            ProblemCase::Contact(case) => contact(&mut out, case),
+            ProblemCase::RingLoad(case) => {
+                out.text("problem", "ring-load");
+                shell(&mut out, case.shell);
+                out.table("dimensionless");
+                out.number("bending", case.bending);
+                out.number("pressure", case.pressure);
+                mesh(&mut out, case.mesh);
+            }
+            ProblemCase::Catalogue(case) => {
+                out.text("problem", &case.name);
+                if !case.parameters.is_empty() {
+                    out.table("parameters");
+                    for (name, value) in &case.parameters {
+                        out.number(name, *value);
+                    }
+                }
+                if let Some(elements) = case.elements {
+                    out.table("mesh");
+                    out.count("elements", elements);
+                }
+            }
+        }
+        path(&mut out, &self.path);
+        out.0
+    }
+}
+
+fn contact(out: &mut Lines, case: &ContactCase) {
+    out.text("problem", "contact");
+    shell(out, case.shell);
+    match &case.physical {
+        None => {
+            out.table("dimensionless");
+            groups(out, "", &case.groups);
+        }
+        Some(given) => {
+            out.table("physical");
+            physical(out, given);
+            out.line("# in dimensionless groups:");
+            groups(out, "#   ", &case.groups);
+        }
+    }
+    mesh(out, case.mesh);
+}
+
+fn shell(out: &mut Lines, shell: ShellCase) {
+    out.table("shell");
+    out.text("law", &shell.law.to_string());
+    out.number("poisson", shell.poisson);
+    if let Law::MooneyRivlin { b } = shell.law {
+        out.number("b", b);
+    }
+}
+
+fn groups(out: &mut Lines, prefix: &str, groups: &Groups) {
+    let all = [
+        ("bending", groups.bending, "k_b / (chi R0^2)"),
+        ("pressure", groups.pressure, "P_A R0 / chi"),
+        ("adhesion", groups.adhesion, "w0 / chi"),
+        ("film", groups.film, "delta_A / R0"),
+        ("surface_tension", groups.surface_tension, "gamma_BW / chi"),
+        ("gas_exponent", groups.gas_exponent, "polytropic exponent of the gas"),
+    ];
+    for (key, value, meaning) in all {
+        out.line(&format!("{prefix}{:<42} # {meaning}", format!("{key} = {value:?}")));
+    }
+}
+
+fn physical(out: &mut Lines, given: &PhysicalCase) {
+    out.text("radius", &given.radius.text);
+    match &given.stiffness {
+        Stiffness::Homogeneous { young, thickness } => {
+            out.text("young", &young.text);
+            out.text("thickness", &thickness.text);
+        }
+        Stiffness::Moduli { chi, bending } => {
+            out.text("chi", &chi.text);
+            out.text("bending", &bending.text);
+        }
+    }
+    out.text("pressure", &given.pressure.text);
+    out.text("adhesion", &given.adhesion.text);
+    out.text("film", &given.film.text);
+    out.text("surface_tension", &given.surface_tension.text);
+    out.number("gas_exponent", given.gas_exponent);
+}
+
+fn mesh(out: &mut Lines, mesh: MeshCase) {
+    out.table("mesh");
+    out.count("elements", mesh.elements);
+    if let Some(grading) = mesh.grading {
+        out.number("grading", grading);
+    }
+}
+
+fn path(out: &mut Lines, path: &PathCase) {
+    out.table("path");
+    out.number("start", path.start);
+    out.number("end", path.end);
+    if let Some(step) = path.max_step {
+        out.number("max_step", step);
+    }
+    if let Some(step) = path.min_step {
+        out.number("min_step", step);
+    }
+    out.count("max_points", path.max_points);
+}
+
+/// TOML, line by line.
+struct Lines(String);
+
+impl Lines {
+    fn line(&mut self, line: &str) {
+        let _ = writeln!(self.0, "{line}");
+    }
+
+    fn table(&mut self, name: &str) {
+        self.line(&format!("\n[{name}]"));
+    }
+
+    fn text(&mut self, key: &str, value: &str) {
+        self.line(&format!("{} = {}", quoted(key), toml::Value::String(value.to_string())));
+    }
+
+    fn number(&mut self, key: &str, value: f64) {
+        self.line(&format!("{} = {value:?}", quoted(key)));
+    }
+
+    fn count(&mut self, key: &str, value: usize) {
+        self.line(&format!("{key} = {value}"));
+    }
+}
+
+/// A key, in quotes if it must be.
+fn quoted(key: &str) -> String {
+    if !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
+        return key.to_string();
+    }
+    toml::Value::String(key.to_string()).to_string()
+}

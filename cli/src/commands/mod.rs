@@ -1,0 +1,48 @@
+//! The commands, one room each.
+
+mod check;
+mod completions;
+mod list;
+mod progress;
+mod trace;
+
+use crate::arguments::{Arguments, CaseArguments, Command};
+use crate::case::{LoadedCase, load};
+use crate::exit::Exit;
+use crate::{run, terminal};
+
+/// Do what was asked.
+pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
+    match &arguments.command {
+        Command::Trace(arguments) => trace::trace(arguments),
+        Command::Check(arguments) => check::check(arguments),
+        Command::List => list::list(),
+        Command::Completions { shell } => completions::completions(*shell),
+    }
+}
+
+/// The case asked for, or the exit code after saying what is wrong with it.
+fn loaded(arguments: &CaseArguments, quiet: bool) -> Result<LoadedCase, Exit> {
+    let loaded = load(&arguments.case, &arguments.overrides(), &run::catalogue());
+    let loaded = loaded.map_err(|error| {
+        terminal::error(&error);
+        Exit::BadInput
+    })?;
+    if !quiet {
+        for note in &loaded.notes {
+            terminal::err(&format!("note: {note}\n"));
+        }
+    }
+    Ok(loaded)
+}
+
+/// Print on standard output; the exit code tells whether that worked.
+fn print(text: &str) -> Exit {
+    match terminal::out(text) {
+        Ok(()) => Exit::Done,
+        Err(error) => {
+            terminal::error(&format!("standard output: cannot be written: {error}"));
+            Exit::NotWritten
+        }
+    }
+}

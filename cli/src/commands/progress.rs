@@ -1,0 +1,71 @@
+//! Progress of a trace on a terminal, and the wish to stop.
+
+use crate::case::PathCase;
+use crate::run::Progress;
+use crate::terminal;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+const LENGTH: u64 = 1000;
+
+/// Shows progress and asks for a stop after Ctrl-C.
+pub(super) struct Observer {
+    bar: Option<ProgressBar>,
+    path: PathCase,
+    farthest: f64,
+    stop: Arc<AtomicBool>,
+}
+
+impl Observer {
+    /// An observer; a quiet one, or one whom nobody watches, shows nothing.
+    pub(super) fn new(path: PathCase, quiet: bool) -> Self {
+        let stop = Arc::new(AtomicBool::new(false));
+        let heard = Arc::clone(&stop);
+        // the second Ctrl-C does not wait for the current step
+        let handler = move || {
+            if heard.swap(true, Ordering::SeqCst) {
+                std::process::exit(130);
+            }
+        };
+        if let Err(error) = ctrlc::set_handler(handler) {
+            terminal::err(&format!("note: Ctrl-C will not keep what was computed: {error}\n"));
+        }
+        let bar = (!quiet && terminal::watched()).then(|| {
+            let bar = ProgressBar::new(LENGTH);
+            if let Ok(style) = ProgressStyle::with_template("{bar:32} {msg}") {
+                bar.set_style(style);
+            }
+            bar
+        });
+        Observer { bar, path, farthest: 0.0, stop }
+    }
+
+    /// Hear of a point; say whether to go on.
+    pub(super) fn hear(&mut self, progress: Progress) -> ControlFlow<()> {
+        if let Some(bar) = &self.bar {
+            let PathCase { start, end, .. } = self.path;
+            let done = ((progress.parameter - start) / (end - start)).clamp(0.0, 1.0);
+            // a branch that turns back has not lost ground
+            self.farthest = self.farthest.max(done);
+            bar.set_position((self.farthest * LENGTH as f64) as u64);
+            bar.set_message(format!(
+                "{} points, {} special; at {:.5}",
+                progress.points, progress.events, progress.parameter
+            ));
+        }
+        if self.stop.load(Ordering::SeqCst) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+
+    /// Clear the line.
+    pub(super) fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! `arclen trace`: follow a branch, write what was found.
+
+use super::progress::Observer;
+use crate::arguments::TraceArguments;
+use crate::case::ResolvedCase;
+use crate::exit::Exit;
+use crate::output::{Folder, TraceResult, branch_csv, events_json, summary};
+use crate::pictures;
+use crate::run::{RunError, run_trace};
+use crate::terminal;
+use std::path::{Path, PathBuf};
+
+const TABLE: &str = "branch.csv";
+const EVENTS: &str = "events.json";
+const CASE: &str = "case.toml";
+
+/// Trace a case.
+pub(super) fn trace(arguments: &TraceArguments) -> Exit {
+    let case = match super::loaded(&arguments.case, arguments.quiet) {
+        Ok(loaded) => loaded.case,
+        Err(exit) => return exit,
+    };
+    let folder = match folder(arguments, &case.name) {
+        Ok(folder) => folder,
+        Err(exit) => return exit,
+    };
+    let mut observer = Observer::new(case.path, arguments.quiet);
+    let outcome = run_trace(&case, &mut |progress| observer.hear(progress));
+    observer.finish();
+    match outcome {
+        Err(error) => {
+            terminal::error(&error);
+            match error {
+                RunError::NotAvailable { .. } => Exit::BadInput,
+                RunError::NoStart { .. } => Exit::StoppedEarly,
+            }
+        }
+        Ok(result) => deliver(arguments, &case, &result, folder.as_ref()),
+    }
+}
+
+/// The output folder, checked before the work starts; `None` when no files are wanted.
+fn folder(arguments: &TraceArguments, case: &str) -> Result<Option<Folder>, Exit> {
+    let path: PathBuf = match &arguments.out {
+        Some(path) => path.clone(),
+        None if arguments.json => return Ok(None),
+        None => Path::new(".").join("arclen-out").join(case),
+    };
+    let names: Vec<&str> = [TABLE, EVENTS, CASE].into_iter().chain(pictures::NAMES).collect();
+    Folder::check(&path, &names).map(Some).map_err(|error| {
+        terminal::error(&error);
+        Exit::BadInput
+    })
+}
+
+/// Write files, JSON and summary.
+fn deliver(
+    arguments: &TraceArguments,
+    case: &ResolvedCase,
+    result: &TraceResult,
+    folder: Option<&Folder>,
+) -> Exit {
+    let mut failed = false;
+    let mut complain = |error: &dyn std::fmt::Display| {
+        terminal::error(error);
+        failed = true;
+    };
+    let json = match events_json(result) {
+        Ok(json) => json,
+        Err(error) => {
+            complain(&error);
+            String::new()
+        }
+    };
+    let mut written = None;
+    if let Some(folder) = folder {
+        let mut files = vec![
+            (EVENTS.to_string(), json.clone().into_bytes()),
+            (CASE.to_string(), case.to_toml().into_bytes()),
+        ];
+        match branch_csv(&result.table) {
+            Ok(table) => files.push((TABLE.to_string(), table)),
+            Err(error) => complain(&error),
+        }
+        if !arguments.no_pictures {
+            match pictures::draw_all(&result.pictures) {
+                Ok(drawn) => files.extend(drawn),
+                Err(error) => complain(&error),
+            }
+        }
+        match folder.write(&files) {
+            Ok(()) => written = Some(folder.path()),
+            Err(error) => complain(&error),
+        }
+    }
+    let mut printed = Exit::Done;
+    if arguments.json {
+        printed = super::print(&json);
+    }
+    if !arguments.quiet {
+        let summary = summary(result, written);
+        if arguments.json {
+            terminal::err(&summary);
+        } else {
+            printed = super::print(&summary);
+        }
+    }
+    if failed || printed != Exit::Done {
+        Exit::NotWritten
+    } else if result.stopped_because.is_complete() {
+        Exit::Done
+    } else {
+        Exit::StoppedEarly
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arguments::{Arguments, Command};
+    use crate::case::{LoadedCase, load};
+    use crate::output::tests::example;
+    use clap::Parser;
+    use continuation::StopReason;
+    use std::fs;
+
+    fn arguments(more: &[&str]) -> TraceArguments {
+        let line = ["arclen", "trace", "fig12", "--quiet"].iter().chain(more);
+        match Arguments::try_parse_from(line).unwrap().command {
+            Command::Trace(arguments) => arguments,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn deliver_to(folder: &Path, more: &[&str], result: &TraceResult) -> Exit {
+        let LoadedCase { case, .. } = load("fig12".as_ref(), &[], &[]).unwrap();
+        let folder = Folder::check(folder, &[]).unwrap();
+        deliver(&arguments(more), &case, result, Some(&folder))
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_finished_trace_leaves_all_its_files() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("deep/out");
+        let mut result = example();
+        result.pictures = crate::pictures::tests::two_folds();
+        assert_eq!(deliver_to(&folder, &[], &result), Exit::Done);
+        let mut expected: Vec<&str> =
+            [TABLE, EVENTS, CASE].into_iter().chain(pictures::NAMES).collect();
+        expected.sort_unstable();
+        assert_eq!(names(&folder), expected);
+        let written = load(&folder.join(CASE), &[], &[]).unwrap();
+        assert_eq!(written, load("fig12".as_ref(), &[], &[]).unwrap());
+    }
+
+    #[test]
+    fn a_trace_that_stopped_early_leaves_its_files_and_exits_with_3() {
+        let place = tempfile::tempdir().unwrap();
+        let mut result = example();
+        for reason in [StopReason::Interrupted, StopReason::StepTooSmall, StopReason::MaxPoints] {
+            result.stopped_because = reason;
+            assert_eq!(deliver_to(place.path(), &["--no-pictures"], &result), Exit::StoppedEarly);
+            assert_eq!(names(place.path()), [TABLE, CASE, EVENTS]);
+            let json = fs::read_to_string(place.path().join(EVENTS)).unwrap();
+            assert!(json.contains(&format!("\"stopped_because\": \"{reason}\"")));
+        }
+    }
+
+    #[test]
+    fn a_folder_that_vanished_under_a_file_exits_with_1() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("out");
+        let checked = Folder::check(&folder, &[]).unwrap();
+        fs::write(&folder, "").unwrap();
+        let LoadedCase { case, .. } = load("fig12".as_ref(), &[], &[]).unwrap();
+        let exit = deliver(&arguments(&[]), &case, &example(), Some(&checked));
+        assert_eq!(exit, Exit::NotWritten);
+    }
+
+    #[test]
+    fn json_without_a_folder_writes_no_files() {
+        assert_eq!(folder(&arguments(&["--json"]), "fig12").unwrap(), None);
+        let place = folder(&arguments(&[]), "fig12").unwrap().unwrap();
+        assert_eq!(place.path(), Path::new("./arclen-out/fig12"));
+        let place = folder(&arguments(&["--json", "--out", "x"]), "fig12").unwrap().unwrap();
+        assert_eq!(place.path(), Path::new("x"));
+    }
+}

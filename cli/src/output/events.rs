@@ -1,0 +1,70 @@
+//! `events.json`: special points, why the branch ended, what it cost.
+
+use super::result::{EventRecord, TraceResult};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+/// The JSON, indented, with a newline at the end; NaN and infinities are null.
+///
+/// # Errors
+/// What the writer reports; memory does not fail, so none is expected.
+pub(crate) fn events_json(result: &TraceResult) -> Result<String, serde_json::Error> {
+    let mut text = serde_json::to_string_pretty(&Document(result))?;
+    text.push('\n');
+    Ok(text)
+}
+
+struct Document<'a>(&'a TraceResult);
+
+impl Serialize for Document<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let result = self.0;
+        let events: Vec<EventOf<'_>> = result
+            .events
+            .iter()
+            .map(|event| EventOf { event, parameter: &result.parameter })
+            .collect();
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("case", &result.case)?;
+        map.serialize_entry("parameter", &result.parameter)?;
+        map.serialize_entry("events", &events)?;
+        map.serialize_entry("stopped_because", &result.stopped_because.to_string())?;
+        map.serialize_entry("stopped_detail", &result.stopped_detail)?;
+        map.serialize_entry("points", &result.points)?;
+        map.serialize_entry("newton_iterations", &result.newton_iterations)?;
+        map.serialize_entry("seconds", &result.seconds)?;
+        map.end()
+    }
+}
+
+struct EventOf<'a> {
+    event: &'a EventRecord,
+    parameter: &'a str,
+}
+
+impl Serialize for EventOf<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let event = self.event;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("kind", &event.kind)?;
+        map.serialize_entry(self.parameter, &event.parameter)?;
+        map.serialize_entry("force", &event.force)?;
+        map.serialize_entry("deformation", &event.deformation)?;
+        map.serialize_entry("energy_total", &event.energy_total)?;
+        map.serialize_entry("unstable_before", &event.unstable_before)?;
+        map.serialize_entry("unstable_after", &event.unstable_after)?;
+        map.serialize_entry("residual", &event.residual)?;
+        map.serialize_entry("error_estimate", &event.error_estimate)?;
+        if !event.observables.is_empty() {
+            map.serialize_entry("observables", &Named(&event.observables))?;
+        }
+        map.end()
+    }
+}
+
+struct Named<'a>(&'a [(String, f64)]);
+
+impl Serialize for Named<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}

@@ -1,0 +1,19 @@
+//! What a trace hands over, and how it becomes files and tables.
+
+mod events;
+mod folder;
+mod number;
+mod result;
+mod summary;
+mod table;
+
+#[cfg(test)]
+pub(crate) mod tests;
+
+pub(crate) use events::events_json;
+pub(crate) use folder::Folder;
+#[cfg_attr(not(test), expect(unused_imports, reason = "for the solvers behind `run`"))]
+pub(crate) use result::{ContactRow, EventRecord, Table};
+pub(crate) use result::{Pictures, TraceResult};
+pub(crate) use summary::summary;
+pub(crate) use table::branch_csv;

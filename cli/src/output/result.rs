@@ -1,0 +1,242 @@
+//! A traced branch as plain numbers, free of solver and problem.
+#![cfg_attr(not(test), expect(dead_code, reason = "filled by the solvers behind `run`"))]
+
+use crate::pictures::{Curve, Profile, Shape};
+use continuation::StopReason;
+
+/// One cell of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Cell {
+    /// A number; anything but a finite one is written as an empty cell.
+    Real(f64),
+    /// A count.
+    Count(usize),
+    /// A word.
+    Text(String),
+    /// Not defined.
+    Empty,
+}
+
+impl From<f64> for Cell {
+    fn from(value: f64) -> Self {
+        Cell::Real(value)
+    }
+}
+
+impl From<Option<f64>> for Cell {
+    fn from(value: Option<f64>) -> Self {
+        value.map_or(Cell::Empty, Cell::Real)
+    }
+}
+
+impl From<usize> for Cell {
+    fn from(value: usize) -> Self {
+        Cell::Count(value)
+    }
+}
+
+impl From<Option<usize>> for Cell {
+    fn from(value: Option<usize>) -> Self {
+        value.map_or(Cell::Empty, Cell::Count)
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(value: &str) -> Self {
+        if value.is_empty() { Cell::Empty } else { Cell::Text(value.to_string()) }
+    }
+}
+
+/// The points of a branch: named columns and rows in order along the branch.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Table {
+    columns: Vec<String>,
+    rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// An empty table with the given columns.
+    pub(crate) fn with_columns(columns: &[&str]) -> Self {
+        Table { columns: columns.iter().map(ToString::to_string).collect(), rows: Vec::new() }
+    }
+
+    /// An empty table of a contact problem: the fixed columns, then `event`.
+    pub(crate) fn contact() -> Self {
+        Self::with_columns(&ContactRow::COLUMNS)
+    }
+
+    /// An empty table of any other problem: `point`, the parameter, observables, `unstable`,
+    /// `event`.
+    pub(crate) fn general(parameter: &str, observables: &[&str]) -> Self {
+        let first = ["point", parameter].into_iter();
+        let columns: Vec<&str> =
+            first.chain(observables.iter().copied()).chain(["unstable", "event"]).collect();
+        Self::with_columns(&columns)
+    }
+
+    /// Add a row; a short one is filled up with empty cells, what is too long is cut.
+    pub(crate) fn push(&mut self, mut row: Vec<Cell>) {
+        row.resize(self.columns.len(), Cell::Empty);
+        self.rows.push(row);
+    }
+
+    /// Names of the columns.
+    pub(crate) fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// The rows, as long as [`Self::columns`] each.
+    pub(crate) fn rows(&self) -> &[Vec<Cell>] {
+        &self.rows
+    }
+}
+
+/// One point of a contact branch; NaN stands for "not defined".
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct ContactRow {
+    /// Number of the point, from zero.
+    pub(crate) point: usize,
+    /// Plate distance, in R0.
+    pub(crate) z0: f64,
+    /// Deformation from the first zero of the force on approach, in R0.
+    pub(crate) deformation: f64,
+    /// Force on one plate, in sqrt(chi k_b), positive in compression.
+    pub(crate) force: f64,
+    /// Unstable modes at fixed plate distance.
+    pub(crate) unstable: Option<usize>,
+    /// Height of the pole above the equator, in R0.
+    pub(crate) pole_height: f64,
+    /// Pressure of the gas, in chi/R0.
+    pub(crate) gas_pressure: f64,
+    /// Volume of the whole shell, in R0³.
+    pub(crate) volume: f64,
+    /// Total energy of the whole shell, in chi R0², as the others.
+    pub(crate) energy_total: f64,
+    /// Energy of stretching.
+    pub(crate) energy_stretching: f64,
+    /// Energy of bending.
+    pub(crate) energy_bending: f64,
+    /// Energy of the film.
+    pub(crate) energy_film: f64,
+    /// Energy of the gas, zero at the initial volume.
+    pub(crate) energy_gas: f64,
+    /// Surface tension times the deformed area.
+    pub(crate) energy_surface: f64,
+    /// Radius of the contact region, in R0.
+    pub(crate) contact_radius: f64,
+    /// Kind of the special point that this is, else empty.
+    pub(crate) event: String,
+}
+
+impl ContactRow {
+    /// The columns, in the order in which files have them.
+    pub(crate) const COLUMNS: [&'static str; 16] = [
+        "point",
+        "z0",
+        "deformation",
+        "force",
+        "unstable",
+        "pole_height",
+        "gas_pressure",
+        "volume",
+        "energy_total",
+        "energy_stretching",
+        "energy_bending",
+        "energy_film",
+        "energy_gas",
+        "energy_surface",
+        "contact_radius",
+        "event",
+    ];
+
+    /// The cells, in the order of [`Self::COLUMNS`].
+    pub(crate) fn cells(&self) -> Vec<Cell> {
+        vec![
+            self.point.into(),
+            self.z0.into(),
+            self.deformation.into(),
+            self.force.into(),
+            self.unstable.into(),
+            self.pole_height.into(),
+            self.gas_pressure.into(),
+            self.volume.into(),
+            self.energy_total.into(),
+            self.energy_stretching.into(),
+            self.energy_bending.into(),
+            self.energy_film.into(),
+            self.energy_gas.into(),
+            self.energy_surface.into(),
+            self.contact_radius.into(),
+            self.event.as_str().into(),
+        ]
+    }
+}
+
+/// A special point; what is not defined is `None`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct EventRecord {
+    /// Kind, as in the contract: `fold`, `branch-point`, `zero-force`, …
+    pub(crate) kind: String,
+    /// Value of the continued parameter.
+    pub(crate) parameter: Option<f64>,
+    /// Force.
+    pub(crate) force: Option<f64>,
+    /// Deformation.
+    pub(crate) deformation: Option<f64>,
+    /// Total energy.
+    pub(crate) energy_total: Option<f64>,
+    /// Unstable modes before, along the branch.
+    pub(crate) unstable_before: Option<usize>,
+    /// Unstable modes after.
+    pub(crate) unstable_after: Option<usize>,
+    /// Largest component of the residual.
+    pub(crate) residual: Option<f64>,
+    /// Estimated error of the location.
+    pub(crate) error_estimate: Option<f64>,
+    /// Further observables by name, for problems whose observables are not the ones above.
+    pub(crate) observables: Vec<(String, f64)>,
+}
+
+/// Everything a trace hands over.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TraceResult {
+    /// Name of the case.
+    pub(crate) case: String,
+    /// Name of the continued parameter: `z0`, or the problem's own.
+    pub(crate) parameter: String,
+    /// The points.
+    pub(crate) table: Table,
+    /// The special points, in order along the branch.
+    pub(crate) events: Vec<EventRecord>,
+    /// Why the branch ended.
+    pub(crate) stopped_because: StopReason,
+    /// The same in a sentence; may be empty.
+    pub(crate) stopped_detail: String,
+    /// Number of points.
+    pub(crate) points: usize,
+    /// Jacobian assemblies.
+    pub(crate) newton_iterations: usize,
+    /// From the resolved case to the last point and event.
+    pub(crate) seconds: f64,
+    /// What the pictures show.
+    pub(crate) pictures: Pictures,
+}
+
+/// What the pictures of a trace show; a picture without data is not drawn.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Pictures {
+    /// Title of every picture.
+    pub(crate) title: String,
+    /// Force against deformation.
+    pub(crate) force_deformation: Option<Curve>,
+    /// Force against plate distance.
+    pub(crate) force_distance: Option<Curve>,
+    /// Deformed shapes at a few points.
+    pub(crate) shapes: Vec<Shape>,
+    /// Disjoining pressure at the same points.
+    pub(crate) film_pressure: Vec<Profile>,
+    /// Energy components against deformation.
+    pub(crate) energies: Vec<Curve>,
+    /// First observable against the parameter, for other problems; with the axes' labels.
+    pub(crate) diagram: Option<(String, String, Curve)>,
+}

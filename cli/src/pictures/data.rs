@@ -1,0 +1,173 @@
+//! What pictures are drawn from: plain numbers. NaN makes a gap.
+
+use std::ops::Range;
+
+/// A curve along a branch.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Curve {
+    /// What it shows, for the legend and for its colour.
+    pub(crate) label: String,
+    /// Abscissae, in order along the branch.
+    pub(crate) x: Vec<f64>,
+    /// Ordinates.
+    pub(crate) y: Vec<f64>,
+    /// Whether the state is unstable; missing entries count as stable.
+    pub(crate) unstable: Vec<bool>,
+    /// Special points on it.
+    pub(crate) marks: Vec<Mark>,
+}
+
+/// A special point on a curve.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Mark {
+    /// Kind, as in the table of special points.
+    pub(crate) kind: String,
+    /// Abscissa.
+    pub(crate) x: f64,
+    /// Ordinate.
+    pub(crate) y: f64,
+}
+
+/// A deformed meridian: the upper half of the cross-section, from pole to equator.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Shape {
+    /// What it is, for the legend.
+    pub(crate) label: String,
+    /// Distances from the axis, in R0.
+    pub(crate) sigma: Vec<f64>,
+    /// Heights above the equator, in R0.
+    pub(crate) z: Vec<f64>,
+    /// Height of the plate, in R0; NaN without one.
+    pub(crate) plate: f64,
+    /// Whether the state is unstable.
+    pub(crate) unstable: bool,
+}
+
+/// A quantity along a deformed meridian.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Profile {
+    /// What state it belongs to, for the legend; the colour goes with its place in the list, the
+    /// same as that of the [`Shape`] at the same place.
+    pub(crate) label: String,
+    /// Distances from the axis, in R0.
+    pub(crate) sigma: Vec<f64>,
+    /// The quantity.
+    pub(crate) value: Vec<f64>,
+    /// Whether the state is unstable.
+    pub(crate) unstable: bool,
+}
+
+/// Whether a number can be drawn.
+pub(super) fn drawable(value: f64) -> bool {
+    value.abs() < 1e100
+}
+
+/// A stretch of a curve of one stability, without gaps: indices of its points.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Stretch {
+    /// Its points.
+    pub(super) points: Range<usize>,
+    /// Whether it is unstable.
+    pub(super) unstable: bool,
+}
+
+impl Curve {
+    /// Number of points that have both coordinates.
+    fn len(&self) -> usize {
+        self.x.len().min(self.y.len())
+    }
+
+    /// Whether the state at a point is unstable.
+    fn is_unstable(&self, at: usize) -> bool {
+        self.unstable.get(at).copied().unwrap_or(false)
+    }
+
+    /// Whether any point that can be drawn is unstable.
+    pub(super) fn has_unstable(&self) -> bool {
+        self.stretches().iter().any(|stretch| stretch.unstable)
+    }
+
+    /// The stretches of the curve. Neighbours of different stability share the point between
+    /// them.
+    pub(super) fn stretches(&self) -> Vec<Stretch> {
+        let good = |at: usize| drawable(self.x[at]) && drawable(self.y[at]);
+        let mut stretches: Vec<Stretch> = Vec::new();
+        let mut at = 0;
+        while at < self.len() {
+            if !good(at) {
+                at += 1;
+                continue;
+            }
+            let end = (at..self.len()).find(|&i| !good(i)).unwrap_or(self.len());
+            let mut start = at;
+            for i in at + 1..end.saturating_sub(1) {
+                let unstable = self.segment_unstable(i - 1);
+                if self.segment_unstable(i) != unstable {
+                    stretches.push(Stretch { points: start..i + 1, unstable });
+                    start = i;
+                }
+            }
+            let unstable =
+                if end - at > 1 { self.segment_unstable(end - 2) } else { self.is_unstable(at) };
+            stretches.push(Stretch { points: start..end, unstable });
+            at = end;
+        }
+        stretches
+    }
+
+    /// Whether the segment after a point is unstable. Where its ends differ, a special point is
+    /// the end at which stability changes, and the segment goes with the other; without one it
+    /// goes with its first end.
+    fn segment_unstable(&self, at: usize) -> bool {
+        let (first, second) = (self.is_unstable(at), self.is_unstable(at + 1));
+        if first == second {
+            return first;
+        }
+        let marked =
+            |i: usize| self.marks.iter().any(|mark| mark.x == self.x[i] && mark.y == self.y[i]);
+        if marked(at) && !marked(at + 1) { second } else { first }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(y: &[f64], unstable: &[bool]) -> Curve {
+        Curve {
+            x: (0..y.len()).map(|i| i as f64).collect(),
+            y: y.to_vec(),
+            unstable: unstable.to_vec(),
+            ..Curve::default()
+        }
+    }
+
+    fn spans(curve: &Curve) -> Vec<(usize, usize, bool)> {
+        curve.stretches().into_iter().map(|s| (s.points.start, s.points.end, s.unstable)).collect()
+    }
+
+    #[test]
+    fn neighbouring_stretches_share_their_boundary() {
+        let (f, t) = (false, true);
+        let c = curve(&[0.0; 6], &[f, f, t, t, f, f]);
+        assert_eq!(spans(&c), [(0, 3, f), (2, 5, t), (4, 6, f)]);
+    }
+
+    #[test]
+    fn a_marked_point_is_where_stability_changes() {
+        let (f, t) = (false, true);
+        // the fold at 1 counts as stable, that at 4 as unstable
+        let mut c = curve(&[0.0; 6], &[f, f, t, t, t, f]);
+        c.marks = [1.0, 4.0].map(|x| Mark { kind: "fold".into(), x, y: 0.0 }).to_vec();
+        assert_eq!(spans(&c), [(0, 2, f), (1, 5, t), (4, 6, f)]);
+    }
+
+    #[test]
+    fn gaps_and_short_data_are_harmless() {
+        assert!(spans(&curve(&[], &[])).is_empty());
+        assert_eq!(spans(&curve(&[1.0], &[true])), [(0, 1, true)]);
+        let gap = curve(&[1.0, f64::NAN, 1.0, 1.0, f64::INFINITY], &[]);
+        assert_eq!(spans(&gap), [(0, 1, false), (2, 4, false)]);
+        assert!(!gap.has_unstable());
+    }
+}

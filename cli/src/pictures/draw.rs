@@ -1,0 +1,166 @@
+//! What each picture shows.
+
+use super::axis::Axis;
+use super::chart::{Chart, DrawError, Entry, Line};
+use super::data::{Curve, Mark, Profile, Shape, drawable};
+use super::palette::{FAINT, of_quantity, of_state};
+use crate::case::document::shown;
+
+const FORCE: &str = "force F/√(χ k_b)";
+const DEFORMATION: &str = "deformation Δ/R₀";
+const WIDE: (u32, u32) = (620, 440);
+
+/// Force against deformation.
+pub(super) fn force_deformation(title: &str, curve: &Curve) -> Result<String, DrawError> {
+    chart(title, DEFORMATION, FORCE, std::slice::from_ref(curve)).svg()
+}
+
+/// Force against plate distance.
+pub(super) fn force_distance(title: &str, curve: &Curve) -> Result<String, DrawError> {
+    chart(title, "plate distance z₀/R₀", FORCE, std::slice::from_ref(curve)).svg()
+}
+
+/// Components of the energy against deformation.
+pub(super) fn energies(title: &str, curves: &[Curve]) -> Result<String, DrawError> {
+    chart(title, DEFORMATION, "energy U/(χ R₀²)", curves).svg()
+}
+
+/// An observable against the parameter.
+pub(super) fn diagram(title: &str, x: &str, y: &str, curve: &Curve) -> Result<String, DrawError> {
+    chart(title, x, y, std::slice::from_ref(curve)).svg()
+}
+
+/// Disjoining pressure against distance from the axis.
+pub(super) fn film_pressure(title: &str, profiles: &[Profile]) -> Result<String, DrawError> {
+    let x = Axis::of("distance from the axis σ/R₀", values(profiles, |p| &p.sigma), 7);
+    let y = Axis::of("disjoining pressure Π R₀/χ", values(profiles, |p| &p.value), 7);
+    let mut lines = Vec::new();
+    let mut legend = Vec::new();
+    for (at, profile) in profiles.iter().enumerate() {
+        let curve = Curve {
+            x: profile.sigma.clone(),
+            y: profile.value.clone(),
+            unstable: vec![profile.unstable; profile.sigma.len()],
+            ..Curve::default()
+        };
+        lines.extend(curve_lines(&curve, of_state(at), (x.unit, y.unit)));
+        legend.push(state_entry(at, &profile.label, profile.unstable));
+    }
+    let title = shown(title);
+    Chart { title, x, y, lines, marks: Vec::new(), legend, size: WIDE }.svg()
+}
+
+/// Deformed shapes: whole cross-sections between their plates, in true proportions.
+pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError> {
+    let plates = shapes.iter().map(|shape| shape.plate);
+    let largest = |values: &mut dyn Iterator<Item = f64>| {
+        values.filter(|v| drawable(*v)).fold(0.2, |a: f64, v| a.max(v.abs()))
+    };
+    let wide = 1.08 * largest(&mut values(shapes, |s| &s.sigma)).max(1.0);
+    let high = 1.08 * largest(&mut values(shapes, |s| &s.z).chain(plates));
+    // one unit is as long on both axes, as long as both fit
+    let scale = (480.0 / wide).min(1200.0 / high);
+    let (width, height) = ((wide * scale).max(120.0), (high * scale).max(120.0));
+    let (wide, high) = (width / scale, height / scale);
+    let x = Axis::exactly("distance from the axis σ/R₀", -wide, wide, 6);
+    let y = Axis::exactly("height z/R₀", -high, high, 6);
+    let units = (x.unit, y.unit);
+    let mut lines = vec![Line {
+        points: (0..=200)
+            .map(|i| f64::from(i) * std::f64::consts::TAU / 200.0)
+            .map(|angle| (angle.cos() / units.0, angle.sin() / units.1))
+            .collect(),
+        color: FAINT,
+        width: 1,
+        dashed: true,
+    }];
+    let mut legend = Vec::new();
+    for (at, shape) in shapes.iter().enumerate() {
+        let color = of_state(at);
+        for (right, up) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
+            let curve = Curve {
+                x: shape.sigma.iter().map(|sigma| right * sigma).collect(),
+                y: shape.z.iter().map(|z| up * z).collect(),
+                unstable: vec![shape.unstable; shape.sigma.len()],
+                ..Curve::default()
+            };
+            lines.extend(curve_lines(&curve, color, units));
+        }
+        for plate in [shape.plate, -shape.plate].into_iter().filter(|z| drawable(*z)) {
+            let ends = [-0.97 * wide, 0.97 * wide];
+            let points = ends.map(|end| (end / units.0, plate / units.1)).to_vec();
+            lines.push(Line { points, color, width: 1, dashed: false });
+        }
+        legend.push(state_entry(at, &shape.label, shape.unstable));
+    }
+    let label = "at rest, without plates".to_string();
+    legend.push(Entry::Line { color: FAINT, dashed: true, label });
+    let size = (width as u32, height as u32);
+    Chart { title: shown(title), x, y, lines, marks: Vec::new(), legend, size }.svg()
+}
+
+/// A chart of curves along a branch, with their special points.
+fn chart(title: &str, x: &str, y: &str, curves: &[Curve]) -> Chart {
+    let marks: Vec<Mark> = curves.iter().flat_map(|curve| curve.marks.clone()).collect();
+    let x = Axis::of(&shown(x), values(curves, |c| &c.x).chain(marks.iter().map(|m| m.x)), 7);
+    let y = Axis::of(&shown(y), values(curves, |c| &c.y).chain(marks.iter().map(|m| m.y)), 7);
+    let lines = curves
+        .iter()
+        .flat_map(|curve| curve_lines(curve, of_quantity(&curve.label), (x.unit, y.unit)))
+        .collect();
+    let mut legend: Vec<Entry> = Vec::new();
+    let unstable = curves.iter().any(Curve::has_unstable);
+    if let [curve] = curves {
+        let color = of_quantity(&curve.label);
+        let label = if unstable { "stable" } else { &curve.label };
+        if !label.is_empty() {
+            legend.push(Entry::Line { color, dashed: false, label: shown(label) });
+        }
+        if unstable {
+            legend.push(Entry::Line { color, dashed: true, label: "unstable".to_string() });
+        }
+    } else {
+        for curve in curves {
+            let (color, label) = (of_quantity(&curve.label), shown(&curve.label));
+            legend.push(Entry::Line { color, dashed: false, label });
+        }
+        if unstable {
+            legend.push(Entry::Line { color: FAINT, dashed: true, label: "unstable".to_string() });
+        }
+    }
+    let mut kinds: Vec<String> = Vec::new();
+    for mark in marks.iter().filter(|mark| drawable(mark.x) && drawable(mark.y)) {
+        let kind = shown(&mark.kind);
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    legend.extend(kinds.into_iter().map(|kind| Entry::Marker { kind }));
+    Chart { title: shown(title), x, y, lines, marks, legend, size: WIDE }
+}
+
+/// The stretches of a curve as lines, in the units of the axes.
+fn curve_lines(curve: &Curve, color: super::palette::Color, units: (f64, f64)) -> Vec<Line> {
+    curve
+        .stretches()
+        .into_iter()
+        .map(|stretch| Line {
+            points: stretch.points.map(|i| (curve.x[i] / units.0, curve.y[i] / units.1)).collect(),
+            color,
+            width: 2,
+            dashed: stretch.unstable,
+        })
+        .collect()
+}
+
+fn state_entry(at: usize, label: &str, unstable: bool) -> Entry {
+    Entry::Line { color: of_state(at), dashed: unstable, label: shown(label) }
+}
+
+/// All numbers of one field.
+fn values<'a, T>(
+    items: &'a [T],
+    field: impl Fn(&'a T) -> &'a Vec<f64> + 'a,
+) -> impl Iterator<Item = f64> + 'a {
+    items.iter().flat_map(move |item| field(item).iter().copied())
+}

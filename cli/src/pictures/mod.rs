@@ -1,0 +1,59 @@
+//! Pictures of a branch as SVG: plain data in, text out.
+//!
+//! Stable parts are solid, unstable parts dashed. A quantity has one colour in every picture, and
+//! so has a state whose shape and film pressure are shown.
+
+mod axis;
+mod chart;
+mod data;
+mod draw;
+mod palette;
+
+#[cfg(test)]
+pub(crate) mod tests;
+
+pub(crate) use chart::DrawError;
+#[cfg_attr(not(test), expect(unused_imports, reason = "for the solvers behind `run`"))]
+pub(crate) use data::Mark;
+pub(crate) use data::{Curve, Profile, Shape};
+
+use crate::output::Pictures;
+
+/// Names of all pictures that a trace may write.
+pub(crate) const NAMES: [&str; 6] = [
+    "force_deformation.svg",
+    "force_distance.svg",
+    "shapes.svg",
+    "film_pressure.svg",
+    "energies.svg",
+    "diagram.svg",
+];
+
+/// All pictures for which there are data: file name and SVG.
+///
+/// # Errors
+/// When the drawing library fails.
+pub(crate) fn draw_all(pictures: &Pictures) -> Result<Vec<(String, Vec<u8>)>, DrawError> {
+    let title = pictures.title.as_str();
+    let mut files = Vec::new();
+    let mut add = |name: &str, svg: String| files.push((name.to_string(), svg.into_bytes()));
+    if let Some(curve) = &pictures.force_deformation {
+        add(NAMES[0], draw::force_deformation(title, curve)?);
+    }
+    if let Some(curve) = &pictures.force_distance {
+        add(NAMES[1], draw::force_distance(title, curve)?);
+    }
+    if !pictures.shapes.is_empty() {
+        add(NAMES[2], draw::shapes(title, &pictures.shapes)?);
+    }
+    if !pictures.film_pressure.is_empty() {
+        add(NAMES[3], draw::film_pressure(title, &pictures.film_pressure)?);
+    }
+    if !pictures.energies.is_empty() {
+        add(NAMES[4], draw::energies(title, &pictures.energies)?);
+    }
+    if let Some((x, y, curve)) = &pictures.diagram {
+        add(NAMES[5], draw::diagram(title, x, y, curve)?);
+    }
+    Ok(files)
+}

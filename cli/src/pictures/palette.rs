@@ -1,0 +1,72 @@
+//! Colours that people with any colour vision can tell apart (Okabe and Ito), and marker shapes.
+
+use plotters::style::BLACK;
+pub(super) use plotters::style::RGBColor as Color;
+use plotters::style::RGBColor;
+
+const BLUE: RGBColor = RGBColor(0, 114, 178);
+const VERMILLION: RGBColor = RGBColor(213, 94, 0);
+const GREEN: RGBColor = RGBColor(0, 158, 115);
+const PURPLE: RGBColor = RGBColor(204, 121, 167);
+const ORANGE: RGBColor = RGBColor(230, 159, 0);
+const SKY: RGBColor = RGBColor(86, 180, 233);
+
+/// Grey of grids.
+pub(super) const GRID: RGBColor = RGBColor(228, 228, 228);
+/// Grey of lines that carry no data: zero, axis of symmetry, the sphere at rest.
+pub(super) const FAINT: RGBColor = RGBColor(150, 150, 150);
+
+/// The colour of a quantity, the same in every picture.
+pub(super) fn of_quantity(label: &str) -> RGBColor {
+    match label {
+        "force" => BLUE,
+        "total" => BLACK,
+        "stretching" => BLUE,
+        "bending" => VERMILLION,
+        "film" => GREEN,
+        "gas" => PURPLE,
+        "surface" => ORANGE,
+        _ => BLUE,
+    }
+}
+
+/// The colour of the state at a place of a list, the same in every picture.
+pub(super) fn of_state(at: usize) -> RGBColor {
+    const STATES: [RGBColor; 7] = [BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY];
+    STATES[at % STATES.len()]
+}
+
+/// The form of a marker.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Form {
+    /// A disc.
+    Disc,
+    /// A square.
+    Square,
+    /// A triangle, point up.
+    Up,
+    /// A triangle, point down.
+    Down,
+    /// A square on its corner.
+    Diamond,
+    /// The same, hollow.
+    HollowDiamond,
+    /// A ring.
+    Ring,
+    /// A diagonal cross.
+    Cross,
+}
+
+/// The marker of a kind of special point.
+pub(super) fn form(kind: &str) -> Form {
+    match kind {
+        "fold" => Form::Disc,
+        "branch-point" => Form::Square,
+        "zero-force" => Form::Up,
+        "pull-off" => Form::Down,
+        "hopf" => Form::Ring,
+        other if other.ends_with("-maximum") => Form::Diamond,
+        other if other.ends_with("-minimum") => Form::HollowDiamond,
+        _ => Form::Cross,
+    }
+}
