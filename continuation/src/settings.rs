@@ -56,7 +56,7 @@ impl Default for Settings {
             tolerance: 1e-11,
             max_iterations: 8,
             max_angle: 0.35,
-            event_tolerance: 1e-11,
+            event_tolerance: 1e-12,
         }
     }
 }

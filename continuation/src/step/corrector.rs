@@ -88,12 +88,6 @@ impl<'a, P: Problem> Core<'a, P> {
         }
     }
 
-    /// All parameters with the continued one at `p`.
-    pub(crate) fn parameters(&mut self, p: f64) -> &[f64] {
-        self.p[self.which.0] = p;
-        &self.p
-    }
-
     /// Residual at a state, largest component.
     pub(crate) fn residual(&mut self, x: &State) -> Result<f64, EvalError> {
         self.p[self.which.0] = x.p;
