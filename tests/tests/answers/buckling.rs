@@ -2,7 +2,8 @@
 
 use continuation::linalg::SymmetricBand;
 use continuation::{
-    EvalError, Matrix, NewtonSettings, ParamId, Parameter, Problem, Stability, newton,
+    EvalError, EventKind, Matrix, NewtonSettings, ParamId, Parameter, Problem, Settings, Stability,
+    Tracer, newton,
 };
 use shell_contact::Mesh;
 use shell_contact::asymptotics::buckling_pressure;
@@ -11,6 +12,7 @@ use shell_contact::energy;
 use shell_contact::film::FourTwo;
 use shell_contact::membrane::Hooke;
 use shell_contact::spline::HALF_BANDWIDTH;
+use std::ops::ControlFlow;
 
 /// A sphere without plates under an external pressure that follows it: energy `E + pV̂`.
 struct Pressurised {
@@ -139,4 +141,27 @@ fn uniformly_shrunk_sphere_buckles_at_the_known_pressures() {
         assert!((ratios[3][mode] - known).abs() < 6e-5);
         assert!(orders[1] > 3.6, "{orders:?}");
     }
+}
+
+/// On a mesh the sphere is imperfect by `h⁴`; the transcritical point `l = 4` unfolds and the branch
+/// turns back below it, nearer by the square root of that.
+#[test]
+fn imperfect_sphere_folds_below_the_transcritical_point() {
+    let leading = buckling_pressure(1e-3);
+    let gaps = [12, 24, 48].map(|elements| {
+        let problem = Pressurised::new(elements, 0.3, 1e-3);
+        let settings = Settings { target: Some(1.08 * leading), ..Settings::default() };
+        let u = vec![0.0; problem.dim()];
+        let branch =
+            Tracer::new(&problem, "pressure", &u, &[0.0], settings).unwrap().run(&mut |at| {
+                if at.events > 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+        let fold = branch.events.first().expect("a fold");
+        assert_eq!(fold.kind, EventKind::Fold);
+        assert_eq!((fold.unstable_before, fold.unstable_after), (Some(0), Some(1)));
+        1.019_324_04 - fold.p / leading
+    });
+    let orders = [0, 1].map(|k| (gaps[k] / gaps[k + 1]).log2());
+    println!("{gaps:?}, orders {orders:.2?}");
+    assert!(gaps[2] > 0.0 && gaps[2] < 1e-5 && orders[1] > 1.7, "{gaps:?} {orders:?}");
 }
