@@ -165,9 +165,8 @@ impl<'a, P: Problem> Tracer<'a, P> {
         })
         .map_err(TraceError::Tangent)?;
         let size = StepSize::new(&settings, range / core.weights.parameter, start.length);
-        let detector =
-            Detector::new(&[], problem.observables(), settings.target, settings.domain)
-                .map_err(|name| unknown_observable(problem, name))?;
+        let detector = Detector::new(&[], problem.observables(), settings.target, settings.domain)
+            .map_err(|name| unknown_observable(problem, name))?;
         let mut tracer = Tracer {
             core,
             settings,
@@ -207,6 +206,11 @@ impl<'a, P: Problem> Tracer<'a, P> {
             self.settings.domain,
         )
         .map_err(|name| unknown_observable(problem, name))?;
+        self.core
+            .want(self.detector.observables(), &mut self.start)
+            .map_err(|error| TraceError::Tangent(Refusal::Evaluation(error)))?;
+        self.current.copy_from(&self.start);
+        self.previous.copy_from(&self.start);
         self.detector.learn(&self.start);
         Ok(self)
     }
@@ -228,10 +232,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
 
     /// Traces to the end and collects the branch. The observer may stop it; nothing computed
     /// is lost.
-    pub fn run(
-        mut self,
-        observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
-    ) -> Branch {
+    pub fn run(mut self, observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Branch {
         let mut points = Vec::new();
         while let Some(point) = self.next() {
             let progress = Progress {
@@ -246,10 +247,8 @@ impl<'a, P: Problem> Tracer<'a, P> {
             }
         }
         let problem = self.core.problem;
-        let stopped = self.stop.unwrap_or(Stop {
-            reason: StopReason::Interrupted,
-            detail: String::new(),
-        });
+        let stopped =
+            self.stop.unwrap_or(Stop { reason: StopReason::Interrupted, detail: String::new() });
         Branch {
             parameter: problem.parameters()[self.core.which.0].name.to_owned(),
             parameters: self.start_p,
@@ -368,8 +367,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let Self { core, current, trial, work, detector, settings, .. } = self;
         let mut located = Vec::with_capacity(found);
         for candidate in detector.found() {
-            let at =
-                locate(core, current, trial, h, candidate, settings.event_tolerance, work)?;
+            let at = locate(core, current, trial, h, candidate, settings.event_tolerance, work)?;
             located.push((*candidate, at));
         }
         located.sort_by(|a, b| a.1.at.total_cmp(&b.1.at));
