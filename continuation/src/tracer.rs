@@ -284,7 +284,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
 
     /// One accepted step: fills the queue, or ends the trace.
     fn advance(&mut self) {
-        if self.emitted + 1 >= self.settings.max_points {
+        if self.emitted >= self.settings.max_points {
             let detail = format!("the limit of {} points was reached", self.settings.max_points);
             return self.end(StopReason::MaxPoints, detail);
         }
@@ -310,9 +310,8 @@ impl<'a, P: Problem> Tracer<'a, P> {
                         return self.end(
                             StopReason::StepTooSmall,
                             format!(
-                                "at {name} = {p:.10}, after {} halvings to {:.1e}: {refusal}",
-                                ((self.size.h / h).log2()).round(),
-                                h * length,
+                                "at {name} = {p:.10} even a step of {:.1e} was refused: {refusal}",
+                                2.0 * h * length,
                             ),
                         );
                     }

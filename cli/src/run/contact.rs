@@ -11,6 +11,9 @@ use std::time::Instant;
 /// Samples along the meridian in pictures of shapes and profiles.
 const SAMPLES: usize = 801;
 
+/// Longest step by default, in R0: short enough for curves that look smooth.
+const SMOOTH: f64 = 0.01;
+
 /// Trace a contact case.
 pub(super) fn run(
     case: &ResolvedCase,
@@ -20,15 +23,17 @@ pub(super) fn run(
     let clock = Instant::now();
     let problem = problem(contact)
         .map_err(|error| RunError::Parameters { case: case.name.clone(), error })?;
-    let traced =
-        trace_contact(&problem, case.path.start, settings(&case.path), &mut listen(observer))
-            .map_err(|detail| RunError::NoStart {
-                case: case.name.clone(),
-                start: case.path.start,
-                detail,
-                remedy: "start farther from the shell (a film that attracts strongly pulls a soft \
+    let mut path = settings(&case.path);
+    path.max_step = path.max_step.or(Some(SMOOTH.max(path.min_step.unwrap_or(0.0))));
+    let traced = trace_contact(&problem, case.path.start, path, &mut listen(observer)).map_err(
+        |detail| RunError::NoStart {
+            case: case.name.clone(),
+            start: case.path.start,
+            detail,
+            remedy: "start farther from the shell (a film that attracts strongly pulls a soft \
                          shell onto the plate: try a larger path.start)",
-            })?;
+        },
+    )?;
     let seconds = clock.elapsed().as_secs_f64();
     let (table, events) = tabulate(&traced);
     let branch = &traced.branch;

@@ -185,7 +185,7 @@ impl<'a, P: Problem> Core<'a, P> {
             report.last = correction;
             let done = match precision {
                 Precision::Step => expected <= converged && correction <= near,
-                Precision::Event => correction <= 1e3 * converged && expected <= converged,
+                Precision::Event => correction <= 3.0 * converged,
             };
             if done {
                 self.finish(constraint, x)?;
