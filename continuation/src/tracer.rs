@@ -154,7 +154,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             settings.max_iterations,
         );
         core.statistics.newton_iterations += report.iterations;
-        let natural = problem.unknown_scale();
+        let natural = problem.unknown_scale(ParamId(which));
         core.start(&mut start, increasing, |du_dp, size| match natural {
             Some(scale) => Weights { unknowns: scale, parameter: scale },
             None => {
@@ -549,7 +549,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
 
     /// Adapts the scale of the unknowns to their growing range.
     fn rescale(&mut self) {
-        if self.core.problem.unknown_scale().is_some() {
+        if self.core.problem.unknown_scale(self.core.which).is_some() {
             return;
         }
         let range = self.core.excursion(&self.current.u, &self.start.u);

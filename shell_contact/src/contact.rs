@@ -343,8 +343,8 @@ impl<F: Potential> Problem for ContactProblem<F> {
     }
 
     /// Displacements and plate distance are lengths in `R0`.
-    fn unknown_scale(&self) -> Option<f64> {
-        Some(1.0)
+    fn unknown_scale(&self, which: ParamId) -> Option<f64> {
+        (which == parameter::Z0).then_some(1.0)
     }
 
     fn stability(&self) -> Stability {

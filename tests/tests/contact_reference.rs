@@ -251,3 +251,39 @@ fn special_points_converge_with_order_four() {
         assert!((3.3..5.5).contains(&order), "order {order} of quantity {k}");
     }
 }
+
+#[test]
+fn every_parameter_can_be_continued() {
+    let case = &cases()["fig07"];
+    let problem = problem(&case.params, 100);
+    let settings = Settings { target: Some(0.9), ..Settings::default() };
+    let start = trace_contact(&problem, case.z_start, settings, &mut |_| ControlFlow::Continue(()));
+    let branch = start.unwrap().branch;
+    let (u, p) = (&branch.points.last().unwrap().u, problem.parameters_at(0.9));
+    for (parameter, k, factor) in [
+        ("adhesion", 1, 0.1),
+        ("bending", 2, 0.2),
+        ("pressure", 3, 2.0),
+        ("film", 4, 0.5),
+        ("surface_tension", 5, 1.0),
+    ] {
+        let target = if k == 5 { 0.08 } else { factor * p[k] };
+        let settings = Settings { target: Some(target), ..Settings::default() };
+        let there = Tracer::new(&problem, parameter, u, &p, settings)
+            .unwrap()
+            .run(&mut |_| ControlFlow::Continue(()));
+        assert_eq!(there.stopped.reason, StopReason::Target, "{parameter}: {:?}", there.stopped);
+        assert!(there.points.len() < 80, "{parameter}: {} points", there.points.len());
+        // and back: the same state
+        let mut q = p.clone();
+        q[k] = target;
+        let settings = Settings { target: Some(p[k]), ..Settings::default() };
+        let far = &there.points.last().unwrap().u;
+        let back = Tracer::new(&problem, parameter, far, &q, settings)
+            .unwrap()
+            .run(&mut |_| ControlFlow::Continue(()));
+        let last = &back.points.last().unwrap().u;
+        let off = last.iter().zip(u).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+        assert!(off < 1e-9, "{parameter}: {off:e}");
+    }
+}
