@@ -23,6 +23,7 @@
 //! # Ok::<(), shell_contact::ParameterError>(())
 //! ```
 
+pub mod asymptotics;
 pub mod bending;
 #[cfg(test)]
 mod certify;

@@ -1,0 +1,142 @@
+//! Buckling of the uniformly shrunk sphere under external pressure (Zoelly).
+
+use continuation::linalg::SymmetricBand;
+use continuation::{
+    EvalError, Matrix, NewtonSettings, ParamId, Parameter, Problem, Stability, newton,
+};
+use shell_contact::Mesh;
+use shell_contact::asymptotics::buckling_pressure;
+use shell_contact::density::Coefficients;
+use shell_contact::energy;
+use shell_contact::film::FourTwo;
+use shell_contact::membrane::Hooke;
+use shell_contact::spline::HALF_BANDWIDTH;
+
+/// A sphere without plates under an external pressure that follows it: energy `E + pV̂`.
+struct Pressurised {
+    mesh: Mesh,
+    law: Hooke,
+    coefficients: Coefficients,
+    parameters: [Parameter; 1],
+}
+
+impl Pressurised {
+    fn new(elements: usize, poisson: f64, bending: f64) -> Pressurised {
+        Pressurised {
+            mesh: Mesh::uniform(elements).unwrap(),
+            law: Hooke { poisson },
+            coefficients: Coefficients {
+                bending,
+                poisson,
+                surface_tension: 0.0,
+                adhesion: 0.0,
+                film: 0.1,
+                plate: 5.0,
+            },
+            parameters: [Parameter { name: "pressure", unit: "chi/R0", scale: 0.1 }],
+        }
+    }
+}
+
+impl Problem for Pressurised {
+    type Jacobian = SymmetricBand;
+    fn dim(&self) -> usize {
+        self.mesh.unknowns()
+    }
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+    fn new_jacobian(&self) -> SymmetricBand {
+        SymmetricBand::new(self.dim(), HALF_BANDWIDTH)
+    }
+    fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
+        self.linearise(u, p, r, &mut self.new_jacobian())
+    }
+    fn jacobian(&self, u: &[f64], p: &[f64], j: &mut SymmetricBand) -> Result<(), EvalError> {
+        self.linearise(u, p, &mut vec![0.0; self.dim()], j)
+    }
+    fn linearise(
+        &self,
+        u: &[f64],
+        p: &[f64],
+        r: &mut [f64],
+        j: &mut SymmetricBand,
+    ) -> Result<(), EvalError> {
+        energy::volume_gradient(&self.mesh, u, r)?;
+        r.iter_mut().for_each(|r| *r *= p[0]);
+        j.set_zero();
+        let c = &self.coefficients;
+        energy::add_linearisation(&self.mesh, u, &self.law, &FourTwo, c, -p[0], r, j)
+    }
+    fn parameter_derivative(
+        &self,
+        u: &[f64],
+        _: &[f64],
+        _: ParamId,
+        out: &mut [f64],
+    ) -> Result<(), EvalError> {
+        energy::volume_gradient(&self.mesh, u, out).map(|_| ())
+    }
+    fn metric(&self, x: &[f64], y: &mut [f64]) {
+        self.mesh.mass().mul(x, y);
+    }
+    fn stability(&self) -> Stability {
+        Stability::EnergyHessian
+    }
+}
+
+/// Radius of the uniformly shrunk sphere, `p = 2τ/λ` with `τ = (1 − λ²)/(2(1 − ν))`.
+fn shrunk(pressure: f64) -> f64 {
+    let b = 0.5 * (1.0 - 0.3) * pressure;
+    (1.0 + b * b).sqrt() - b
+}
+
+/// The state is the sphere shrunk exactly, as far as splines can: an equilibrium of the mesh is an
+/// imperfect sphere, whose branch turns back before the transcritical point `l = 4`.
+///
+/// The first two even modes, `l = 4` and `l = 6`, at 1.0193 and 1.0544 times `4√k_b`.
+#[test]
+fn uniformly_shrunk_sphere_buckles_at_the_known_pressures() {
+    let bending = 1e-3;
+    let leading = buckling_pressure(bending);
+    let ratios = [16, 32, 64, 128].map(|elements| {
+        let problem = Pressurised::new(elements, 0.3, bending);
+        let half = 0.5 * leading;
+        let mut shape = vec![0.0; problem.dim()];
+        newton(&problem, &mut shape, &[half], &NewtonSettings::default()).unwrap();
+        let error = (0..=20).fold(0.0_f64, |worst, i| {
+            let place = problem.mesh.place(&shape, f64::from(i) * 0.0785);
+            worst.max((place.s[0].hypot(place.z[0]) - shrunk(half)).abs())
+        });
+        assert!(error < 2e-7, "uniform to discretisation error: {error:.1e}");
+        let unstable = |ratio: f64| {
+            let p = ratio * leading;
+            let scale = (1.0 - shrunk(p)) / (1.0 - shrunk(half));
+            let u: Vec<f64> = shape.iter().map(|x| scale * x).collect();
+            let mut hessian = problem.new_jacobian();
+            problem.jacobian(&u, &[p], &mut hessian).unwrap();
+            let floor = f64::EPSILON * hessian.norm();
+            hessian.factor(floor).inertia.unwrap().0
+        };
+        [0, 1].map(|modes| {
+            let (mut low, mut high) = (0.9, 1.1);
+            assert!(unstable(low) == 0 && unstable(high) >= 2);
+            while high - low > 1e-11 {
+                let middle = 0.5 * (low + high);
+                if unstable(middle) > modes {
+                    high = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            low
+        })
+    });
+    for (mode, known) in [(0, 1.0193), (1, 1.0544)] {
+        let gaps = [0, 1, 2].map(|m| ratios[m][mode] - ratios[m + 1][mode]);
+        let orders = [0, 1].map(|m| (gaps[m] / gaps[m + 1]).log2());
+        println!("{known}: {:?}, orders {orders:.2?}", ratios.map(|r| r[mode]));
+        assert!((ratios[3][mode] - known).abs() < 6e-5);
+        assert!(orders[1] > 3.6, "{orders:?}");
+    }
+}
