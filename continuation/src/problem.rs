@@ -106,11 +106,12 @@ pub trait Problem {
         y.copy_from_slice(x);
     }
 
-    /// The natural magnitude of the unknowns in the problem's metric, where the problem knows it.
+    /// The natural magnitude that the unknowns share with a parameter, where the problem knows it.
     ///
     /// `Some(1.0)` says that unknowns and parameter are comparable as they are (lengths in the
     /// same unit, say); `None` has the tracer weigh them by their ranges along the branch.
-    fn unknown_scale(&self) -> Option<f64> {
+    fn unknown_scale(&self, which: ParamId) -> Option<f64> {
+        let _ = which;
         None
     }
 

@@ -67,6 +67,20 @@ impl Problem for Cusp {
 /// The Bratu problem `−u″ = λ eᵘ`, `u(0) = u(1) = 0`, by second-order finite differences on `n`
 /// interior nodes, multiplied by the spacing (the energy's gradient and Hessian).
 ///
+/// ```
+/// use continuation::{EventKind, Settings, Tracer, Watch, samples::Bratu};
+/// use std::ops::ControlFlow;
+///
+/// let (problem, n) = (Bratu::new(99), 99);
+/// let settings = Settings { increasing: Some(true), ..Settings::default() };
+/// let branch = Tracer::new(&problem, "lambda", &vec![0.0; n], &[0.0], settings)?
+///     .watching(&[Watch::stop_at("max_u", 8.0)])?
+///     .run(&mut |_| ControlFlow::Continue(()));
+/// let fold = branch.events_of(&EventKind::Fold).next().map(|e| e.p);
+/// assert!((fold.unwrap() - 3.513_647_903_969).abs() < 1e-11);
+/// # Ok::<(), continuation::TraceError>(())
+/// ```
+///
 /// Fold at λ = 3.513830719125 (θ tanh θ = 1) in the limit; 3.513647903969 with 99 interior
 /// nodes, 3.5138278698498 with 800.
 #[derive(Debug, Clone, Copy)]

@@ -154,7 +154,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             settings.max_iterations,
         );
         core.statistics.newton_iterations += report.iterations;
-        let natural = problem.unknown_scale();
+        let natural = problem.unknown_scale(ParamId(which));
         core.start(&mut start, increasing, |du_dp, size| match natural {
             Some(scale) => Weights { unknowns: scale, parameter: scale },
             None => {
@@ -165,9 +165,8 @@ impl<'a, P: Problem> Tracer<'a, P> {
         })
         .map_err(TraceError::Tangent)?;
         let size = StepSize::new(&settings, range / core.weights.parameter, start.length);
-        let detector =
-            Detector::new(&[], problem.observables(), settings.target, settings.domain)
-                .map_err(|name| unknown_observable(problem, name))?;
+        let detector = Detector::new(&[], problem.observables(), settings.target, settings.domain)
+            .map_err(|name| unknown_observable(problem, name))?;
         let mut tracer = Tracer {
             core,
             settings,
@@ -207,6 +206,11 @@ impl<'a, P: Problem> Tracer<'a, P> {
             self.settings.domain,
         )
         .map_err(|name| unknown_observable(problem, name))?;
+        self.core
+            .want(self.detector.observables(), &mut self.start)
+            .map_err(|error| TraceError::Tangent(Refusal::Evaluation(error)))?;
+        self.current.copy_from(&self.start);
+        self.previous.copy_from(&self.start);
         self.detector.learn(&self.start);
         Ok(self)
     }
@@ -228,10 +232,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
 
     /// Traces to the end and collects the branch. The observer may stop it; nothing computed
     /// is lost.
-    pub fn run(
-        mut self,
-        observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
-    ) -> Branch {
+    pub fn run(mut self, observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Branch {
         let mut points = Vec::new();
         while let Some(point) = self.next() {
             let progress = Progress {
@@ -246,10 +247,8 @@ impl<'a, P: Problem> Tracer<'a, P> {
             }
         }
         let problem = self.core.problem;
-        let stopped = self.stop.unwrap_or(Stop {
-            reason: StopReason::Interrupted,
-            detail: String::new(),
-        });
+        let stopped =
+            self.stop.unwrap_or(Stop { reason: StopReason::Interrupted, detail: String::new() });
         Branch {
             parameter: problem.parameters()[self.core.which.0].name.to_owned(),
             parameters: self.start_p,
@@ -285,7 +284,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
 
     /// One accepted step: fills the queue, or ends the trace.
     fn advance(&mut self) {
-        if self.emitted + 1 >= self.settings.max_points {
+        if self.emitted >= self.settings.max_points {
             let detail = format!("the limit of {} points was reached", self.settings.max_points);
             return self.end(StopReason::MaxPoints, detail);
         }
@@ -311,9 +310,8 @@ impl<'a, P: Problem> Tracer<'a, P> {
                         return self.end(
                             StopReason::StepTooSmall,
                             format!(
-                                "at {name} = {p:.10}, after {} halvings to {:.1e}: {refusal}",
-                                ((self.size.h / h).log2()).round(),
-                                h * length,
+                                "at {name} = {p:.10} even a step of {:.1e} was refused: {refusal}",
+                                2.0 * h * length,
                             ),
                         );
                     }
@@ -368,8 +366,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let Self { core, current, trial, work, detector, settings, .. } = self;
         let mut located = Vec::with_capacity(found);
         for candidate in detector.found() {
-            let at =
-                locate(core, current, trial, h, candidate, settings.event_tolerance, work)?;
+            let at = locate(core, current, trial, h, candidate, settings.event_tolerance, work)?;
             located.push((*candidate, at));
         }
         located.sort_by(|a, b| a.1.at.total_cmp(&b.1.at));
@@ -552,7 +549,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
 
     /// Adapts the scale of the unknowns to their growing range.
     fn rescale(&mut self) {
-        if self.core.problem.unknown_scale().is_some() {
+        if self.core.problem.unknown_scale(self.core.which).is_some() {
             return;
         }
         let range = self.core.excursion(&self.current.u, &self.start.u);

@@ -34,8 +34,7 @@ fn cusp_has_its_two_folds_at_every_step_length() {
             assert!((x + p.signum() / 3f64.sqrt()).abs() < 1e-10, "{max_step:?}: x = {x}");
             assert!(fold.error_estimate < 1e-9);
         }
-        let counts: Vec<_> =
-            folds.iter().map(|f| (f.unstable_before, f.unstable_after)).collect();
+        let counts: Vec<_> = folds.iter().map(|f| (f.unstable_before, f.unstable_after)).collect();
         assert_eq!(counts, [(Some(0), Some(1)), (Some(1), Some(0))]);
         let zeros: Vec<_> =
             branch.events_of(&EventKind::Zero("x".to_owned())).map(|e| e.p).collect();
@@ -48,7 +47,8 @@ fn cusp_has_its_two_folds_at_every_step_length() {
 
 #[test]
 fn bratu_turns_at_the_known_fold() {
-    for (n, fold, tolerance) in [(99, 3.513_647_903_969, 1e-12), (800, 3.513_827_869_849_8, 1e-12)] {
+    for (n, fold, tolerance) in [(99, 3.513_647_903_969, 1e-12), (800, 3.513_827_869_849_8, 1e-12)]
+    {
         let settings = Settings { increasing: Some(true), ..Settings::default() };
         let watch = [Watch::stop_at("max_u", 8.0)];
         let problem = Bratu::new(n);

@@ -342,6 +342,11 @@ impl<F: Potential> Problem for ContactProblem<F> {
         self.mesh.mass().mul(x, y);
     }
 
+    /// Displacements and plate distance are lengths in `R0`.
+    fn unknown_scale(&self, which: ParamId) -> Option<f64> {
+        (which == parameter::Z0).then_some(1.0)
+    }
+
     fn stability(&self) -> Stability {
         Stability::EnergyHessian
     }

@@ -41,6 +41,7 @@ pub mod params;
 pub mod quadrature;
 pub mod scalar;
 pub mod spline;
+pub mod trace;
 pub mod weak_form;
 
 pub use contact::ContactProblem;
@@ -49,3 +50,4 @@ pub use observables::{Observation, Profile};
 pub use params::{
     Dimensionless, Law, ParameterError, Physical, Scales, Shell, Stiffness, default_gas_exponent,
 };
+pub use trace::{ContactBranch, trace_contact};

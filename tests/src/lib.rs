@@ -1,1 +1,16 @@
 //! Cross-crate tests live in `tests/`; this library is empty.
+
+/// The code of every README, as tests.
+#[cfg(doctest)]
+mod readme {
+    #[doc = include_str!("../../README.md")]
+    struct Workspace;
+    #[doc = include_str!("../../continuation/README.md")]
+    struct Continuation;
+    #[doc = include_str!("../../shell_contact/README.md")]
+    struct ShellContact;
+    #[doc = include_str!("../../problems/README.md")]
+    struct Problems;
+    #[doc = include_str!("../../cli/README.md")]
+    struct Cli;
+}

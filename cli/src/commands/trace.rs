@@ -6,7 +6,7 @@ use crate::case::ResolvedCase;
 use crate::exit::Exit;
 use crate::output::{Folder, TraceResult, branch_csv, events_json, summary};
 use crate::pictures;
-use crate::run::{RunError, run_trace};
+use crate::run::run_trace;
 use crate::terminal;
 use std::path::{Path, PathBuf};
 
@@ -30,10 +30,7 @@ pub(super) fn trace(arguments: &TraceArguments) -> Exit {
     match outcome {
         Err(error) => {
             terminal::error(&error);
-            match error {
-                RunError::NotAvailable { .. } => Exit::BadInput,
-                RunError::NoStart { .. } => Exit::StoppedEarly,
-            }
+            Exit::BadInput
         }
         Ok(result) => deliver(arguments, &case, &result, folder.as_ref()),
     }

@@ -12,7 +12,6 @@ pub(crate) mod tests;
 
 pub(crate) use events::events_json;
 pub(crate) use folder::Folder;
-#[cfg_attr(not(test), expect(unused_imports, reason = "for the solvers behind `run`"))]
 pub(crate) use result::{ContactRow, EventRecord, Table};
 pub(crate) use result::{Pictures, TraceResult};
 pub(crate) use summary::summary;

@@ -1,5 +1,4 @@
 //! A traced branch as plain numbers, free of solver and problem.
-#![cfg_attr(not(test), expect(dead_code, reason = "filled by the solvers behind `run`"))]
 
 use crate::pictures::{Curve, Profile, Shape};
 use continuation::StopReason;

@@ -33,7 +33,7 @@ pub(super) fn diagram(title: &str, x: &str, y: &str, curve: &Curve) -> Result<St
 /// Disjoining pressure against distance from the axis.
 pub(super) fn film_pressure(title: &str, profiles: &[Profile]) -> Result<String, DrawError> {
     let x = Axis::of("distance from the axis σ/R₀", values(profiles, |p| &p.sigma), 7);
-    let y = Axis::of("disjoining pressure Π R₀/χ", values(profiles, |p| &p.value), 7);
+    let y = Axis::of("disjoining pressure Π δ_A/w₀", values(profiles, |p| &p.value), 7);
     let mut lines = Vec::new();
     let mut legend = Vec::new();
     for (at, profile) in profiles.iter().enumerate() {

@@ -13,7 +13,6 @@ mod palette;
 pub(crate) mod tests;
 
 pub(crate) use chart::DrawError;
-#[cfg_attr(not(test), expect(unused_imports, reason = "for the solvers behind `run`"))]
 pub(crate) use data::Mark;
 pub(crate) use data::{Curve, Profile, Shape};
 

@@ -89,9 +89,8 @@ impl Detector {
         target: Option<f64>,
         domain: Option<(f64, f64)>,
     ) -> Result<Self, String> {
-        let index = |name: &String| {
-            observables.iter().position(|o| o == name).ok_or_else(|| name.clone())
-        };
+        let index =
+            |name: &String| observables.iter().position(|o| o == name).ok_or_else(|| name.clone());
         let mut watched = Vec::new();
         for watch in watches {
             watched.push(match watch {
@@ -115,6 +114,16 @@ impl Detector {
         }
         let found = Vec::with_capacity(watched.len() + 2);
         Ok(Detector { watched, magnitude: vec![0.0; observables.len()], found })
+    }
+
+    /// The observables that are watched.
+    pub(crate) fn observables(&self) -> impl Iterator<Item = usize> + '_ {
+        self.watched.iter().filter_map(|candidate| match candidate {
+            Candidate::Value { observable, .. } | Candidate::Extremum { observable } => {
+                Some(*observable)
+            }
+            _ => None,
+        })
     }
 
     /// Learns the magnitudes of observables from an accepted state.
@@ -201,11 +210,7 @@ impl Detector {
     }
 
     fn cubic(&self, a: &State, b: &State, k: usize, level: f64, h: f64) -> Cubic {
-        Cubic {
-            h,
-            g: [a.values[k] - level, b.values[k] - level],
-            s: [a.slopes[k], b.slopes[k]],
-        }
+        Cubic { h, g: [a.values[k] - level, b.values[k] - level], s: [a.slopes[k], b.slopes[k]] }
     }
 
     /// Two folds within one step, or a parameter that runs astray between its ends.

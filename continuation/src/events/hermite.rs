@@ -44,8 +44,7 @@ impl Cubic {
     /// Whether the cubic has two zeros inside though the ends have the same sign.
     pub(crate) fn hides_zeros(&self) -> bool {
         let [g0, g1] = self.g;
-        g0 * g1 > 0.0
-            && self.extrema().into_iter().flatten().any(|x| self.value(x) * g0 < 0.0)
+        g0 * g1 > 0.0 && self.extrema().into_iter().flatten().any(|x| self.value(x) * g0 < 0.0)
     }
 
     /// Whether the cubic has two extrema inside though the slopes have the same sign.
@@ -70,11 +69,7 @@ mod tests {
 
     #[test]
     fn a_cubic_is_reproduced_with_its_extrema() {
-        let c = cubic(
-            |x| x * x * x - 2.0 * x * x + x - 3.0,
-            |x| 3.0 * x * x - 4.0 * x + 1.0,
-            1.5,
-        );
+        let c = cubic(|x| x * x * x - 2.0 * x * x + x - 3.0, |x| 3.0 * x * x - 4.0 * x + 1.0, 1.5);
         let x: f64 = 0.7;
         assert!((c.value(x) - (x.powi(3) - 2.0 * x * x + x - 3.0)).abs() < 1e-14);
         let mut found: Vec<f64> = c.extrema().into_iter().flatten().collect();

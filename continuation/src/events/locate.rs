@@ -6,9 +6,9 @@
 //! exact tangent for a fold) is a smooth scalar with a simple zero, which a bracketed
 //! superlinear search finds to rounding.
 
+use super::detect::Candidate;
 use super::hermite::basis;
 use super::root::Search;
-use super::detect::Candidate;
 use crate::problem::Problem;
 use crate::step::{Constraint, Core, Precision, Refusal, State};
 

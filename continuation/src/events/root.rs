@@ -50,7 +50,8 @@ impl Search {
         let quadratic = phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi;
         let mut t = if quadratic {
             self.f1 / (self.f2 - self.f1) * (self.f3 / (self.f2 - self.f3))
-                + (self.x3 - self.x1) / (self.x2 - self.x1) * (self.f1 / (self.f3 - self.f1))
+                + (self.x3 - self.x1) / (self.x2 - self.x1)
+                    * (self.f1 / (self.f3 - self.f1))
                     * (self.f2 / (self.f3 - self.f2))
         } else if self.x3 == self.x2 {
             // first evaluation: the secant

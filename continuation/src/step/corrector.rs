@@ -45,6 +45,8 @@ pub(crate) struct Core<'a, P: Problem> {
     pub(crate) which: ParamId,
     pub(crate) weights: Weights,
     pub(crate) statistics: Statistics,
+    /// Which observables' slopes are wanted.
+    pub(crate) wanted: Vec<bool>,
     tolerance: f64,
     max_iterations: usize,
     p: Vec<f64>,
@@ -74,6 +76,7 @@ impl<'a, P: Problem> Core<'a, P> {
             which,
             weights,
             statistics: Statistics::default(),
+            wanted: vec![false; m],
             tolerance,
             max_iterations,
             p: p.to_vec(),
@@ -182,7 +185,7 @@ impl<'a, P: Problem> Core<'a, P> {
             report.last = correction;
             let done = match precision {
                 Precision::Step => expected <= converged && correction <= near,
-                Precision::Event => correction <= 1e3 * converged && expected <= converged,
+                Precision::Event => correction <= 3.0 * converged,
             };
             if done {
                 self.finish(constraint, x)?;
@@ -239,9 +242,7 @@ impl<'a, P: Problem> Core<'a, P> {
             },
             Stability::Dynamics => match facts.core.inertia {
                 Some((_, positive)) => Some(positive),
-                None => {
-                    Some(self.jacobian.spectrum()?.iter().filter(|(re, _)| *re > 0.0).count())
-                }
+                None => Some(self.jacobian.spectrum()?.iter().filter(|(re, _)| *re > 0.0).count()),
             },
         }
     }
@@ -254,9 +255,8 @@ impl<'a, P: Problem> Core<'a, P> {
         self.p[self.which.0] = x.p;
         self.problem.observe(&x.u, &self.p, &mut x.values)?;
         let mut differences = false;
-        for k in 0..x.values.len() {
-            let slope =
-                self.problem.observable_slope(k, &x.u, &self.p, self.which, &x.tu, x.tp)?;
+        for k in (0..x.values.len()).filter(|&k| self.wanted[k]) {
+            let slope = self.problem.observable_slope(k, &x.u, &self.p, self.which, &x.tu, x.tp)?;
             x.slopes[k] = slope.unwrap_or(f64::NAN);
             differences |= slope.is_none();
         }
@@ -272,7 +272,7 @@ impl<'a, P: Problem> Core<'a, P> {
             self.p[self.which.0] = x.p + sign * h * x.tp;
             self.problem.observe(&self.shifted[side], &self.p, &mut self.observed[side])?;
         }
-        for k in 0..x.values.len() {
+        for k in (0..x.values.len()).filter(|&k| self.wanted[k]) {
             if x.slopes[k].is_nan() {
                 x.slopes[k] = (self.observed[0][k] - self.observed[1][k]) / (2.0 * h);
             }
@@ -314,6 +314,18 @@ impl<'a, P: Problem> Core<'a, P> {
         self.bordered.solve(&mut self.jacobian, &mut x.tu, &mut g);
         x.tp = g[0];
         self.complete(x)
+    }
+
+    /// Asks for the slopes of these observables from now on, and at `x` at once.
+    pub(crate) fn want(
+        &mut self,
+        observables: impl Iterator<Item = usize>,
+        x: &mut State,
+    ) -> Result<(), EvalError> {
+        for k in observables {
+            self.wanted[k] = true;
+        }
+        self.observe(x)
     }
 
     /// Distance between two states in the scaled metric and the cosines of the angles between

@@ -44,11 +44,8 @@ pub(crate) fn judge(
 ) -> Result<Quality, Refusal> {
     let (distance, cos_from, cos_to) = secant;
     let angle = tangents.clamp(-1.0, 1.0).acos();
-    let quality = Quality {
-        angle,
-        contraction: corrected.contraction,
-        deviation: corrected.first / h,
-    };
+    let quality =
+        Quality { angle, contraction: corrected.contraction, deviation: corrected.first / h };
     if quality.contraction > MAX_CONTRACTION {
         return Err(Refusal::Contraction { contraction: quality.contraction });
     }

@@ -20,12 +20,8 @@ impl StepSize {
     /// `range` is the parameter's range in scaled arclength; `length` the tangent's length in
     /// the problem's metric at the start.
     pub(crate) fn new(settings: &Settings, range: f64, length: f64) -> Self {
-        let mut size = StepSize {
-            h: 0.0,
-            longest: settings.max_step,
-            shortest: settings.min_step,
-            range,
-        };
+        let mut size =
+            StepSize { h: 0.0, longest: settings.max_step, shortest: settings.min_step, range };
         let first = settings.first_step.map_or(0.1 * size.longest(length), |s| s / length);
         size.h = first.clamp(size.shortest(length), size.longest(length));
         size

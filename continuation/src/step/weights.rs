@@ -17,8 +17,7 @@ pub(crate) struct Weights {
 impl Weights {
     /// Inner product of `(a, ap)` and `(b, bp)`, where `ma = M a`.
     pub(crate) fn dot(&self, ma: &[f64], ap: f64, b: &[f64], bp: f64) -> f64 {
-        dot(ma, b) / (self.unknowns * self.unknowns)
-            + ap * bp / (self.parameter * self.parameter)
+        dot(ma, b) / (self.unknowns * self.unknowns) + ap * bp / (self.parameter * self.parameter)
     }
 
     /// Norm of `(x, p)`, where `mx = M x`.

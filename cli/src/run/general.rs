@@ -1,0 +1,106 @@
+//! Problems of the catalogue.
+
+use super::{Observer, RunError, listen, settings};
+use crate::case::{CatalogueCase, CatalogueEntry, ResolvedCase};
+use crate::output::Pictures;
+use crate::output::{EventRecord, Table, TraceResult};
+use crate::pictures::{Curve, Mark};
+use problems::{Entry, Request};
+use std::time::Instant;
+
+/// A problem of the catalogue, as case files know it.
+pub(super) fn entry(entry: &Entry) -> CatalogueEntry {
+    CatalogueEntry {
+        name: entry.name.to_owned(),
+        summary: entry.summary.to_owned(),
+        parameter: entry.parameter.to_owned(),
+        start: entry.start,
+        end: entry.end,
+        parameters: entry.parameters.iter().map(|(name, v)| ((*name).to_owned(), *v)).collect(),
+        elements: entry.elements,
+    }
+}
+
+/// Trace a problem of the catalogue.
+pub(super) fn run(
+    case: &ResolvedCase,
+    problem: &CatalogueCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    let found = problems::catalogue().iter().find(|entry| entry.name == problem.name);
+    let entry = found.ok_or_else(|| RunError::NotAvailable {
+        case: case.name.clone(),
+        problem: problem.name.clone(),
+    })?;
+    let value =
+        |&(name, default): &(&str, f64)| problem.parameters.get(name).copied().unwrap_or(default);
+    let request = Request {
+        start: case.path.start,
+        parameters: entry.parameters.iter().map(value).collect(),
+        elements: problem.elements.or(entry.elements).unwrap_or(0),
+        settings: settings(&case.path),
+    };
+    let clock = Instant::now();
+    let branch =
+        entry.trace(&request, &mut listen(observer)).map_err(|detail| RunError::NoStart {
+            case: case.name.clone(),
+            start: case.path.start,
+            detail,
+            remedy: "choose another start or other parameters",
+        })?;
+    let seconds = clock.elapsed().as_secs_f64();
+
+    let names: Vec<&str> = branch.observables.iter().map(String::as_str).collect();
+    let mut table = Table::general(&branch.parameter, &names);
+    for (index, point) in branch.points.iter().enumerate() {
+        let kind = point.event.map(|e| branch.events[e].kind.to_string()).unwrap_or_default();
+        let mut row = vec![index.into(), point.p.into()];
+        row.extend(point.observables.iter().map(|&v| v.into()));
+        row.extend([point.unstable.into(), kind.as_str().into()]);
+        table.push(row);
+    }
+    let mut curve =
+        Curve { label: names.first().copied().unwrap_or("").to_owned(), ..Curve::default() };
+    for point in &branch.points {
+        curve.x.push(point.p);
+        curve.y.push(point.observables.first().copied().unwrap_or(f64::NAN));
+        curve.unstable.push(point.unstable.is_some_and(|n| n > 0));
+    }
+    let mut events = Vec::new();
+    for event in &branch.events {
+        let point = &branch.points[event.point];
+        let named = branch.observables.iter().cloned().zip(point.observables.iter().copied());
+        events.push(EventRecord {
+            kind: event.kind.to_string(),
+            parameter: Some(event.p),
+            unstable_before: event.unstable_before,
+            unstable_after: event.unstable_after,
+            residual: Some(event.residual),
+            error_estimate: Some(event.error_estimate),
+            observables: named.collect(),
+            ..EventRecord::default()
+        });
+        curve.marks.push(Mark {
+            kind: event.kind.to_string(),
+            x: curve.x[event.point],
+            y: curve.y[event.point],
+        });
+    }
+    let pictures = Pictures {
+        title: case.name.clone(),
+        diagram: Some((branch.parameter.clone(), curve.label.clone(), curve)),
+        ..Pictures::default()
+    };
+    Ok(TraceResult {
+        case: case.name.clone(),
+        parameter: branch.parameter.clone(),
+        table,
+        events,
+        stopped_because: branch.stopped.reason,
+        stopped_detail: branch.stopped.detail,
+        points: branch.points.len(),
+        newton_iterations: branch.statistics.newton_iterations,
+        seconds,
+        pictures,
+    })
+}

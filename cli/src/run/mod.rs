@@ -1,0 +1,106 @@
+//! The seam between the command line and the solvers: a checked case goes in, plain numbers come
+//! out.
+
+mod contact;
+mod general;
+
+use crate::case::{CatalogueEntry, PathCase, ProblemCase, ResolvedCase};
+use crate::output::TraceResult;
+use continuation::{Settings, TraceError};
+use std::ops::ControlFlow;
+
+/// How far a trace has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Progress {
+    /// Points so far.
+    pub(crate) points: usize,
+    /// Special points so far.
+    pub(crate) events: usize,
+    /// Value of the continued parameter.
+    pub(crate) parameter: f64,
+}
+
+/// Told of every point; may stop the trace.
+pub(crate) type Observer<'o> = dyn FnMut(Progress) -> ControlFlow<()> + 'o;
+
+/// Why there is no result at all. A branch that stops early is a result.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub(crate) enum RunError {
+    /// No solver for this kind of problem in this program.
+    #[error("{case}: problem \"{problem}\" cannot be traced by this version of arclen")]
+    NotAvailable {
+        /// Name of the case.
+        case: String,
+        /// Name of the problem.
+        problem: String,
+    },
+    /// The model refuses the parameters.
+    #[error("{case}: {error}")]
+    Parameters {
+        /// Name of the case.
+        case: String,
+        /// What it says.
+        error: shell_contact::ParameterError,
+    },
+    /// Not even the first point could be computed.
+    #[error("{case}: path.start = {start}: {detail}; {remedy}")]
+    NoStart {
+        /// Name of the case.
+        case: String,
+        /// The start asked for.
+        start: f64,
+        /// What happened.
+        detail: TraceError,
+        /// What to do.
+        remedy: &'static str,
+    },
+}
+
+/// The problems of the catalogue, as the command line knows them.
+pub(crate) fn catalogue() -> Vec<CatalogueEntry> {
+    problems::catalogue().iter().map(general::entry).collect()
+}
+
+/// Trace a case. The observer hears of every point and may stop the trace; what was computed until
+/// then is kept, with [`continuation::StopReason::Interrupted`].
+///
+/// # Errors
+/// When there is no result at all.
+pub(crate) fn run_trace(
+    case: &ResolvedCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    match &case.problem {
+        ProblemCase::Contact(contact) => contact::run(case, contact, observer),
+        ProblemCase::RingLoad(_) => Err(RunError::NotAvailable {
+            case: case.name.clone(),
+            problem: "ring-load".to_string(),
+        }),
+        ProblemCase::Catalogue(problem) => general::run(case, problem, observer),
+    }
+}
+
+/// The tracer's settings for a path.
+fn settings(path: &PathCase) -> Settings {
+    Settings {
+        target: Some(path.end),
+        max_step: path.max_step,
+        min_step: path.min_step,
+        max_points: path.max_points,
+        ..Settings::default()
+    }
+}
+
+/// Hands the tracer's progress on.
+fn listen<'o>(
+    observer: &'o mut Observer<'_>,
+) -> impl FnMut(&continuation::Progress) -> ControlFlow<()> + 'o {
+    move |progress| {
+        observer(Progress {
+            points: progress.points,
+            events: progress.events,
+            parameter: progress.p,
+        })
+    }
+}

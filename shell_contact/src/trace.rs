@@ -1,0 +1,60 @@
+//! The main job: the branch of a shell between approaching plates, with its special points.
+
+use crate::contact::ContactProblem;
+use crate::film::Potential;
+use continuation::{Branch, EventKind, Problem, Progress, Settings, TraceError, Tracer, Watch};
+use std::ops::ControlFlow;
+
+/// Name of the special point of most attractive force.
+pub const PULL_OFF: &str = "pull-off";
+
+/// A traced contact branch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactBranch {
+    /// Points and special points.
+    pub branch: Branch,
+    /// Plate distance at the first zero of the force on approach, from which deformation counts.
+    pub zero_force: Option<f64>,
+}
+
+impl ContactBranch {
+    /// Deformation `d̂ = ẑ0(F = 0) − ẑ0`, Eq. (19): plate against equator, one pole.
+    pub fn deformation(&self, z0: f64) -> Option<f64> {
+        self.zero_force.map(|zero| zero - z0)
+    }
+}
+
+/// Traces the branch that starts at the free shell with the plates at `start`; `settings` says
+/// where it ends. Zeros and extrema of the force are located; the lowest interior minimum below
+/// zero is the pull-off.
+///
+/// # Errors
+/// When the start is unusable; a branch that ends early is a result.
+pub fn trace_contact<F: Potential>(
+    problem: &ContactProblem<F>,
+    start: f64,
+    settings: Settings,
+    observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<ContactBranch, TraceError> {
+    let (u, p) = (problem.initial_state(), problem.parameters_at(start));
+    let watches = [Watch::zero("force"), Watch::extremum("force")];
+    let tracer = Tracer::new(problem, "z0", &u, &p, settings)?.watching(&watches)?;
+    let mut branch = tracer.run(observer);
+    name_pull_off(&mut branch, problem.observables());
+    let zero = EventKind::Zero("force".to_owned());
+    let zero_force = branch.events_of(&zero).next().map(|event| event.p);
+    Ok(ContactBranch { branch, zero_force })
+}
+
+/// Renames the lowest minimum of the force below zero.
+fn name_pull_off(branch: &mut Branch, observables: &[&str]) {
+    let Some(force) = observables.iter().position(|name| *name == "force") else { return };
+    let minimum = EventKind::Minimum("force".to_owned());
+    let value = |k: usize| branch.points[branch.events[k].point].observables[force];
+    let lowest = (0..branch.events.len())
+        .filter(|&k| branch.events[k].kind == minimum && value(k) < 0.0)
+        .min_by(|&a, &b| value(a).total_cmp(&value(b)));
+    if let Some(k) = lowest {
+        branch.events[k].kind = EventKind::Named(PULL_OFF.to_owned());
+    }
+}

@@ -1,0 +1,68 @@
+//! Nothing allocates in Newton's method, in solves and in test functions.
+
+use continuation::linalg::Bordered;
+use continuation::{ParamId, Problem, Settings, Tracer, Watch};
+use shell_contact::{ContactProblem, Dimensionless, Law, Mesh, Shell};
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use std::alloc::System;
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+fn fig12(elements: usize) -> ContactProblem {
+    let groups = Dimensionless {
+        bending: 3e-5,
+        pressure: 3e-3,
+        adhesion: 2e-3,
+        film: 1.0 / 30.0,
+        surface_tension: 0.0,
+        gas_exponent: 1.07,
+    };
+    let shell = Shell { law: Law::Hooke, poisson: 0.5 };
+    ContactProblem::new(&shell, &groups, Mesh::uniform(elements).unwrap()).unwrap()
+}
+
+// one test: other threads of the test runner would be counted too
+#[test]
+fn the_loop_does_not_allocate() {
+    let problem = fig12(200);
+    let n = problem.dim();
+    let (u, p) = (problem.initial_state(), problem.parameters_at(1.1));
+    let mut jacobian = problem.new_jacobian();
+    let mut bordered = Bordered::new(n, 1);
+    let (mut r, mut m) = (vec![0.0; n], vec![0.0; n]);
+    let mut observed = vec![0.0; problem.observables().len()];
+
+    let region = Region::new(ALLOCATOR);
+    for _ in 0..5 {
+        problem.linearise(&u, &p, &mut r, &mut jacobian).unwrap();
+        problem.parameter_derivative(&u, &p, ParamId(0), bordered.column_mut(0)).unwrap();
+        problem.metric(&r, &mut m);
+        bordered.row_mut(0).copy_from_slice(&m);
+        bordered.set_corner(0, 0, 1.0);
+        bordered.factor(&mut jacobian);
+        let mut g = [0.5];
+        bordered.solve(&mut jacobian, &mut r, &mut g);
+        problem.observe(&u, &p, &mut observed).unwrap();
+        problem.observable_slope(0, &u, &p, ParamId(0), &r, 1.0).unwrap();
+    }
+    let change = region.change();
+    assert_eq!(change.allocations + change.reallocations, 0, "{change:?}");
+
+    // a traced point costs its own storage and nothing per iteration: two vectors, and now and
+    // then room for more points, special points and their names
+    let settings = Settings { target: Some(0.95), ..Settings::default() };
+    let watches = [Watch::zero("force"), Watch::extremum("force")];
+    let mut tracer =
+        Tracer::new(&problem, "z0", &u, &p, settings).unwrap().watching(&watches).unwrap();
+    let region = Region::new(ALLOCATOR);
+    let points = tracer.by_ref().count();
+    let change = region.change();
+    let iterations = tracer.statistics().newton_iterations;
+    let allowed = 2 * points + 12 * (tracer.events().len() + 2);
+    assert!(points > 20 && iterations > 2 * points);
+    assert!(
+        change.allocations <= allowed,
+        "{change:?} for {points} points, {iterations} iterations"
+    );
+}
