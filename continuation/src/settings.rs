@@ -89,7 +89,7 @@ impl Settings {
             return Err(SettingsError { key: "target", value: t, allowed: "finite" });
         }
         if let Some((lo, hi)) = self.domain
-            && !(lo < hi)
+            && (lo.is_nan() || hi.is_nan() || lo >= hi)
         {
             return Err(SettingsError { key: "domain", value: lo, allowed: "an interval lo < hi" });
         }

@@ -1,5 +1,7 @@
 //! Special points of problems with known answers.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use continuation::samples::{Bratu, Cusp};
 use continuation::{Branch, EventKind, Problem, Settings, StopReason, Tracer, Watch};
 use std::ops::ControlFlow;

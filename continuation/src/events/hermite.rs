@@ -31,7 +31,7 @@ impl Cubic {
         let (s0, s1) = (self.h * self.s[0], self.h * self.s[1]);
         let (a, b, c) = (3.0 * (s0 + s1) - 6.0 * change, 6.0 * change - 4.0 * s0 - 2.0 * s1, s0);
         let discriminant = b * b - 4.0 * a * c;
-        if !(discriminant > 0.0) {
+        if discriminant.is_nan() || discriminant <= 0.0 {
             return [None, None];
         }
         let q = -0.5 * (b + discriminant.sqrt().copysign(b));
