@@ -1,7 +1,7 @@
 //! Numerical continuation and bifurcation analysis of equilibria `f(u, p) = 0`.
 //!
 //! Floors, from the ground up; each uses only floors below it:
-//! [`linalg`] → [`problem`] → [`newton`] → step (predict, correct, judge) → events (detect,
+//! [`linalg`] → [`problem`] → [`mod@newton`] → step (predict, correct, judge) → events (detect,
 //! locate) → [`tracer`]. A traced [`branch`] is plain data.
 
 pub mod branch;

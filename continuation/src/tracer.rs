@@ -101,6 +101,10 @@ pub struct Tracer<'a, P: Problem> {
     trial: State,
     work: State,
     left_start: bool,
+    // the latest step that crossed to the other orientation, and where it began
+    crossing: Option<f64>,
+    anchor: State,
+    anchor_s: f64,
     s: f64,
     running_unstable: Option<usize>,
     queue: VecDeque<BranchPoint>,
@@ -179,6 +183,9 @@ impl<'a, P: Problem> Tracer<'a, P> {
             trial: start.clone(),
             work: start.clone(),
             left_start: false,
+            crossing: None,
+            anchor: start.clone(),
+            anchor_s: 0.0,
             s: 0.0,
             running_unstable: start.unstable,
             queue: VecDeque::new(),
@@ -300,10 +307,18 @@ impl<'a, P: Problem> Tracer<'a, P> {
                 }
                 Err(refusal) => {
                     self.core.statistics.rejected += 1;
+                    if refusal == Refusal::Orientation {
+                        self.crossing = Some(h);
+                        self.anchor.copy_from(&self.current);
+                        self.anchor_s = self.s;
+                    }
                     h *= match refusal {
                         Refusal::Evaluation(_) => 0.4,
                         _ => 0.5,
                     };
+                    if h < shortest && self.leap(&refusal) {
+                        return;
+                    }
                     if h < shortest {
                         let p = self.current.p;
                         let name = self.core.problem.parameters()[self.core.which.0].name;
@@ -318,6 +333,29 @@ impl<'a, P: Problem> Tracer<'a, P> {
                 }
             }
         }
+    }
+
+    /// Where steps fail at every length though a longer one had reached a state of the other
+    /// orientation, the branch runs into a branch point that is imperfect by less than can be
+    /// followed. The shortest step that did cross is taken, and marks the branch point.
+    fn leap(&mut self, refusal: &Refusal) -> bool {
+        if matches!(refusal, Refusal::Evaluation(_)) {
+            return false;
+        }
+        let Some(h) = self.crossing.take() else { return false };
+        if self.s - self.anchor_s > 2.0 * h * self.anchor.length {
+            return false;
+        }
+        std::mem::swap(&mut self.current, &mut self.anchor);
+        self.previous_h = 0.0;
+        // the corner blurs short steps; longer ones see the crossing branches only
+        let longest = self.size.longest(self.current.length);
+        let lengths = [1.0, 8.0, 64.0, 512.0].map(|factor| factor * h);
+        if lengths.into_iter().any(|h| h <= longest && self.attempt(h, true).is_ok()) {
+            return true;
+        }
+        std::mem::swap(&mut self.current, &mut self.anchor);
+        false
     }
 
     /// Tries a step of scaled length `h`.

@@ -46,6 +46,7 @@ impl Serialize for EventOf<'_> {
         let event = self.event;
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("kind", &event.kind)?;
+        map.serialize_entry("parameter", self.parameter)?;
         map.serialize_entry(self.parameter, &event.parameter)?;
         map.serialize_entry("force", &event.force)?;
         map.serialize_entry("deformation", &event.deformation)?;

@@ -64,7 +64,7 @@ pub(crate) fn locate<P: Problem>(
         match core.correct(Constraint::Plane(a, at), x, Precision::Event) {
             Ok(done) => correction = done.last,
             // as close to the singular point as the corrector gets
-            Err(_) if *candidate == Candidate::BranchPoint && search.width() < 1e-3 * h => break,
+            Err(_) if *candidate == Candidate::BranchPoint => break,
             Err(refusal) => return Err(refusal),
         }
         let value = candidate.test(x, a.orientation);

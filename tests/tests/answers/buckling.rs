@@ -3,7 +3,7 @@
 use continuation::linalg::SymmetricBand;
 use continuation::{
     EvalError, EventKind, Matrix, NewtonSettings, ParamId, Parameter, Problem, Settings, Stability,
-    Tracer, newton,
+    StopReason, Tracer, newton,
 };
 use shell_contact::Mesh;
 use shell_contact::asymptotics::buckling_pressure;
@@ -164,4 +164,25 @@ fn imperfect_sphere_folds_below_the_transcritical_point() {
     let orders = [0, 1].map(|k| (gaps[k] / gaps[k + 1]).log2());
     println!("{gaps:?}, orders {orders:.2?}");
     assert!(gaps[2] > 0.0 && gaps[2] < 1e-5 && orders[1] > 1.7, "{gaps:?} {orders:?}");
+}
+
+/// On a finer mesh the unfolding is smaller than rounding lets a tracer follow: the sphere's
+/// branch is traced across its branch points, which are reported.
+#[test]
+fn corner_too_sharp_to_follow() {
+    let leading = buckling_pressure(1e-3);
+    let problem = Pressurised::new(192, 0.3, 1e-3);
+    let settings = Settings { target: Some(1.08 * leading), ..Settings::default() };
+    let u = vec![0.0; problem.dim()];
+    let branch = Tracer::new(&problem, "pressure", &u, &[0.0], settings)
+        .unwrap()
+        .run(&mut |_| ControlFlow::Continue(()));
+    let found: Vec<_> = branch.events_of(&EventKind::BranchPoint).collect();
+    assert_eq!(branch.stopped.reason, StopReason::Target);
+    assert_eq!(found.len(), 2);
+    for (point, known) in found.iter().zip([1.019_324_04, 1.054_440_31]) {
+        // as near as the corner is wide
+        assert!((point.p / leading - known).abs() < 5e-6, "{}", point.p / leading);
+    }
+    assert_eq!(branch.points.last().unwrap().unstable, Some(2));
 }

@@ -1,0 +1,116 @@
+//! Traces as scripts see them: files, columns, exit codes, numbers.
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn arclen(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_arclen")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn events(folder: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(folder.join("events.json")).unwrap()).unwrap()
+}
+
+/// Rows of `branch.csv` without its header.
+fn rows(folder: &Path) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(folder.join("branch.csv")).unwrap();
+    text.lines().skip(1).map(|l| l.split(',').map(str::to_owned).collect()).collect()
+}
+
+#[test]
+fn strong_adhesion_gives_two_folds_and_every_file() {
+    let place = tempfile::tempdir().unwrap();
+    let output = arclen(place.path(), &["trace", "fig12", "--elements", "100"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let out = place.path().join("arclen-out/fig12");
+    for file in ["branch.csv", "events.json", "case.toml", "force_distance.svg", "shapes.svg"] {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+    let json = events(&out);
+    let kinds: Vec<&str> =
+        json["events"].as_array().unwrap().iter().map(|e| e["kind"].as_str().unwrap()).collect();
+    assert_eq!(kinds.iter().filter(|k| **k == "fold").count(), 2);
+    assert_eq!(kinds.iter().filter(|k| **k == "pull-off").count(), 1);
+    assert_eq!(json["stopped_because"], "target");
+    assert_eq!(json["points"].as_u64().unwrap() as usize, rows(&out).len());
+    let rows = rows(&out);
+    assert_eq!(rows[0][1], "1.15");
+    assert_eq!(rows.last().unwrap()[1], "0.65");
+    // special points stand among the rows, in order along the branch
+    let marked: Vec<&str> = rows.iter().map(|r| r[15].as_str()).filter(|e| !e.is_empty()).collect();
+    assert_eq!(marked, kinds);
+}
+
+#[test]
+fn where_the_dimples_meet_the_trace_stops_and_keeps_its_results() {
+    let place = tempfile::tempdir().unwrap();
+    let arguments = ["trace", "fig06", "--elements", "100", "--set", "path.end=0.02", "--out", "o"];
+    let output = arclen(place.path(), &arguments);
+    assert_eq!(output.status.code(), Some(3));
+    let out = place.path().join("o");
+    let json = events(&out);
+    assert_eq!(json["stopped_because"], "step-too-small");
+    let detail = json["stopped_detail"].as_str().unwrap();
+    assert!(detail.contains("the dimples meet"), "{detail}");
+    let last = rows(&out).pop().unwrap();
+    let pole: f64 = last[5].parse().unwrap();
+    assert!((0.0..1e-5).contains(&pole), "pole height {pole}");
+}
+
+#[test]
+fn the_limit_of_points_is_kept_and_said() {
+    let place = tempfile::tempdir().unwrap();
+    let arguments =
+        ["trace", "fig06", "--elements", "50", "--set", "path.max_points=20", "--out", "o"];
+    let output = arclen(place.path(), &arguments);
+    assert_eq!(output.status.code(), Some(3));
+    let out = place.path().join("o");
+    assert_eq!(events(&out)["stopped_because"], "max-points");
+    assert_eq!(rows(&out).len(), 20);
+}
+
+#[test]
+fn a_start_without_equilibrium_is_an_input_error() {
+    let place = tempfile::tempdir().unwrap();
+    let arguments =
+        ["trace", "fig06", "--set", "dimensionless.adhesion=2", "--set", "path.start=1.01"];
+    let output = arclen(place.path(), &arguments);
+    assert_eq!(output.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(message.contains("path.start = 1.01"), "{message}");
+    assert!(message.contains("no solution at the start"), "{message}");
+    assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn physical_units_give_the_same_curve_as_their_groups() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("o");
+    let arguments = ["trace", "polymer", "--set", "path.end=0.96", "--out", "o", "--json"];
+    let output = arclen(place.path(), &arguments);
+    assert_eq!(output.status.code(), Some(0));
+    let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(printed, events(&out));
+    // Fig. 6, another program on the same model: F = 0.43491916 at P_A = 2.895e-3; one standard
+    // atmosphere is 2.895e-3 chi/R0 to four digits
+    let force: f64 = rows(&out).pop().unwrap()[3].parse().unwrap();
+    assert!((force - 0.434_919_16).abs() < 1e-6, "{force}");
+}
+
+#[test]
+fn catalogue_problems_have_their_own_columns() {
+    let place = tempfile::tempdir().unwrap();
+    let output = arclen(place.path(), &["trace", "bratu", "--out", "o"]);
+    assert_eq!(output.status.code(), Some(0));
+    let out = place.path().join("o");
+    let header = fs::read_to_string(out.join("branch.csv")).unwrap();
+    assert!(header.starts_with("point,lambda,max_u,unstable,event\n"), "{header}");
+    let json = events(&out);
+    let fold = &json["events"][0];
+    assert_eq!(fold["kind"], "fold");
+    assert_eq!(fold["parameter"], "lambda");
+    assert!((fold["lambda"].as_f64().unwrap() - 3.513_827_869_849_8).abs() < 1e-10);
+}
