@@ -2,8 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+use continuation::linalg::Dense;
 use continuation::samples::{Bratu, Cusp};
-use continuation::{Branch, EventKind, Problem, Settings, StopReason, Tracer, Watch};
+use continuation::{
+    Branch, EvalError, EventKind, ParamId, Parameter, Problem, Settings, StopReason, Tracer, Watch,
+};
 use std::ops::ControlFlow;
 
 fn trace<P: Problem>(
@@ -64,4 +67,88 @@ fn bratu_turns_at_the_known_fold() {
         assert!((last.observables[0] - 8.0).abs() < 1e-9);
         println!("{n}: {} points, {:?}", branch.points.len(), branch.statistics);
     }
+}
+
+/// `x² + p² = 1`: a closed branch.
+struct Circle;
+
+impl Problem for Circle {
+    type Jacobian = Dense;
+    fn dim(&self) -> usize {
+        1
+    }
+    fn parameters(&self) -> &[Parameter] {
+        &[Parameter { name: "p", unit: "", scale: 1.0 }]
+    }
+    fn new_jacobian(&self) -> Dense {
+        Dense::new(1)
+    }
+    fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
+        r[0] = u[0] * u[0] + p[0] * p[0] - 1.0;
+        Ok(())
+    }
+    fn jacobian(&self, u: &[f64], _: &[f64], j: &mut Dense) -> Result<(), EvalError> {
+        j.set(0, 0, 2.0 * u[0]);
+        Ok(())
+    }
+    fn parameter_derivative(
+        &self,
+        _: &[f64],
+        p: &[f64],
+        _: ParamId,
+        out: &mut [f64],
+    ) -> Result<(), EvalError> {
+        out[0] = 2.0 * p[0];
+        Ok(())
+    }
+}
+
+#[test]
+fn a_closed_branch_ends_where_it_began() {
+    for max_step in [None, Some(0.01), Some(0.5)] {
+        let settings = Settings { max_step, ..Settings::default() };
+        let branch = trace(&Circle, "p", &[1.0], &[0.3], settings, &[]);
+        assert_eq!(branch.stopped.reason, StopReason::ClosedLoop, "{:?}", branch.stopped);
+        let folds: Vec<f64> = branch.events_of(&EventKind::Fold).map(|e| e.p).collect();
+        assert_eq!(folds.len(), 2, "{max_step:?}");
+        assert!((folds[0] - 1.0).abs() < 1e-12 && (folds[1] + 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_branch_says_why_it_ended() {
+    let domain = Settings { domain: Some((-0.5, 0.5)), ..Settings::default() };
+    let branch = trace(&Circle, "p", &[1.0], &[0.3], domain, &[]);
+    assert_eq!(branch.stopped.reason, StopReason::Domain);
+    assert_eq!(branch.points.last().unwrap().p, 0.5);
+
+    let few = Settings { max_points: 7, ..Settings::default() };
+    let branch = trace(&Circle, "p", &[1.0], &[0.3], few, &[]);
+    assert_eq!((branch.stopped.reason, branch.points.len()), (StopReason::MaxPoints, 7));
+
+    let tracer = Tracer::new(&Circle, "p", &[1.0], &[0.3], Settings::default()).unwrap();
+    let branch = tracer.run(&mut |at| {
+        if at.points == 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert_eq!((branch.stopped.reason, branch.points.len()), (StopReason::Interrupted, 5));
+
+    let copy: Branch = serde_json::from_str(&serde_json::to_string(&branch).unwrap()).unwrap();
+    assert_eq!(copy, branch);
+}
+
+#[test]
+fn unusable_input_is_refused_with_a_reason() {
+    let refuse = |parameter: &str, u: &[f64], p: &[f64], settings: Settings| {
+        Tracer::new(&Circle, parameter, u, p, settings).err().unwrap().to_string()
+    };
+    let plain = Settings::default;
+    assert!(refuse("q", &[1.0], &[0.0], plain()).contains("there are: p"));
+    assert!(refuse("p", &[1.0, 2.0], &[0.0], plain()).contains("needs 1"));
+    assert!(refuse("p", &[f64::NAN], &[0.0], plain()).contains("not finite"));
+    assert!(refuse("p", &[1.0], &[3.0], plain()).contains("no solution at the start"));
+    let settings = Settings { max_step: Some(-1.0), ..plain() };
+    assert!(refuse("p", &[1.0], &[0.0], settings).contains("max_step"));
+    let tracer = Tracer::new(&Circle, "p", &[1.0], &[0.0], plain()).unwrap();
+    let error = tracer.watching(&[Watch::zero("force")]).err().unwrap().to_string();
+    assert!(error.contains("no observable `force`"), "{error}");
 }

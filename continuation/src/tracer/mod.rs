@@ -15,76 +15,20 @@
 //! # Ok::<(), continuation::TraceError>(())
 //! ```
 
+mod closure;
+mod input;
+
+pub use input::{Progress, TraceError};
+
 use crate::branch::{Branch, BranchPoint, Event, EventKind, Statistics, Stop, StopReason};
 use crate::events::{Candidate, Detector, Located, Role, Watch, locate};
-use crate::newton::{NewtonError, NewtonSettings, newton};
+use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem};
-use crate::settings::{Settings, SettingsError};
+use crate::settings::Settings;
 use crate::step::{Constraint, Core, Precision, Refusal, State, StepSize, Weights, judge};
+use input::{check, unknown_observable};
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
-
-/// Why a trace could not begin.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum TraceError {
-    /// A setting is out of range.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-    /// No parameter of that name.
-    #[error("no parameter `{name}`; there are: {known}")]
-    UnknownParameter {
-        /// The name asked for.
-        name: String,
-        /// The names there are.
-        known: String,
-    },
-    /// No observable of that name.
-    #[error("no observable `{name}`; there are: {known}")]
-    UnknownObservable {
-        /// The name asked for.
-        name: String,
-        /// The names there are.
-        known: String,
-    },
-    /// A vector of the wrong length.
-    #[error("{what} has length {got}, but the problem needs {expected}")]
-    Length {
-        /// Which vector.
-        what: &'static str,
-        /// Its length.
-        got: usize,
-        /// The right length.
-        expected: usize,
-    },
-    /// The starting values are not finite.
-    #[error("{what} holds a number that is not finite (index {at})")]
-    NotFinite {
-        /// Which vector.
-        what: &'static str,
-        /// Where.
-        at: usize,
-    },
-    /// No solution at the start.
-    #[error("no solution at the start: {0}")]
-    Start(NewtonError),
-    /// The branch has no tangent at the start.
-    #[error("no tangent at the start: {0}")]
-    Tangent(Refusal),
-}
-
-/// What an observer is told after every point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Progress {
-    /// Points so far.
-    pub points: usize,
-    /// Special points so far.
-    pub events: usize,
-    /// Value of the continued parameter.
-    pub p: f64,
-    /// Arclength so far.
-    pub s: f64,
-}
 
 /// Traces one branch; yields its points in order, special points included.
 pub struct Tracer<'a, P: Problem> {
@@ -540,51 +484,6 @@ impl<'a, P: Problem> Tracer<'a, P> {
         Ok(())
     }
 
-    /// Whether the step passes over the start of the branch, and in which direction.
-    fn passes_start(&mut self, h: f64) -> Option<StopReason> {
-        if !self.left_start {
-            return None;
-        }
-        let Self { core, current, trial, start, .. } = self;
-        let w = core.weights;
-        let side = |x: &State| {
-            let along: f64 =
-                x.u.iter().zip(&start.u).zip(&start.mtu).map(|((a, b), m)| (a - b) * m).sum();
-            along / (w.unknowns * w.unknowns)
-                + start.tp * (x.p - start.p) / (w.parameter * w.parameter)
-        };
-        let (a, b) = (side(current), side(trial));
-        if a * b > 0.0 {
-            return None;
-        }
-        // nearest point of the step's chord: on the branch up to its curvature
-        let (distance, ..) = core.secant(current, start);
-        if distance > 1.5 * h {
-            return None;
-        }
-        let t = distance / h;
-        let off = {
-            let mut sum = 0.0;
-            let [w0, w1, w2, w3] = crate::events::basis(t.min(1.0));
-            for i in 0..start.u.len() {
-                let x = w0 * current.u[i]
-                    + w1 * h * current.tu[i]
-                    + w2 * trial.u[i]
-                    + w3 * h * trial.tu[i];
-                self.work.u[i] = x;
-                sum += (x - start.u[i]).abs();
-            }
-            let u = core.excursion(&self.work.u, &start.u) / w.unknowns;
-            let p = w0 * current.p + w1 * h * current.tp + w2 * trial.p + w3 * h * trial.tp;
-            if sum.is_finite() { u.hypot((p - start.p) / w.parameter) } else { f64::INFINITY }
-        };
-        if off > 0.02 * h {
-            return None;
-        }
-        let direction = w.dot(&start.mtu, start.tp, &current.tu, current.tp);
-        Some(if direction > 0.0 { StopReason::ClosedLoop } else { StopReason::ReturnedToStart })
-    }
-
     /// Adapts the scale of the unknowns to their growing range.
     fn rescale(&mut self) {
         if self.core.problem.unknown_scale(self.core.which).is_some() {
@@ -622,18 +521,4 @@ fn step_quality(tangents: f64) -> crate::step::Quality {
         contraction: 0.0,
         deviation: 0.0,
     }
-}
-
-fn check(what: &'static str, values: &[f64], expected: usize) -> Result<(), TraceError> {
-    if values.len() != expected {
-        return Err(TraceError::Length { what, got: values.len(), expected });
-    }
-    match values.iter().position(|v| !v.is_finite()) {
-        Some(at) => Err(TraceError::NotFinite { what, at }),
-        None => Ok(()),
-    }
-}
-
-fn unknown_observable<P: Problem>(problem: &P, name: String) -> TraceError {
-    TraceError::UnknownObservable { name, known: problem.observables().join(", ") }
 }

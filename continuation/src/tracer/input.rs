@@ -1,0 +1,84 @@
+//! What a trace is told, and why it could not begin.
+
+use crate::newton::NewtonError;
+use crate::problem::Problem;
+use crate::settings::SettingsError;
+use crate::step::Refusal;
+
+/// Why a trace could not begin.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TraceError {
+    /// A setting is out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// No parameter of that name.
+    #[error("no parameter `{name}`; there are: {known}")]
+    UnknownParameter {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// No observable of that name.
+    #[error("no observable `{name}`; there are: {known}")]
+    UnknownObservable {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// A vector of the wrong length.
+    #[error("{what} has length {got}, but the problem needs {expected}")]
+    Length {
+        /// Which vector.
+        what: &'static str,
+        /// Its length.
+        got: usize,
+        /// The right length.
+        expected: usize,
+    },
+    /// The starting values are not finite.
+    #[error("{what} holds a number that is not finite (index {at})")]
+    NotFinite {
+        /// Which vector.
+        what: &'static str,
+        /// Where.
+        at: usize,
+    },
+    /// No solution at the start.
+    #[error("no solution at the start: {0}")]
+    Start(NewtonError),
+    /// The branch has no tangent at the start.
+    #[error("no tangent at the start: {0}")]
+    Tangent(Refusal),
+}
+
+/// What an observer is told after every point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Points so far.
+    pub points: usize,
+    /// Special points so far.
+    pub events: usize,
+    /// Value of the continued parameter.
+    pub p: f64,
+    /// Arclength so far.
+    pub s: f64,
+}
+
+/// Checks a vector's length and that it is finite.
+pub(super) fn check(what: &'static str, values: &[f64], expected: usize) -> Result<(), TraceError> {
+    if values.len() != expected {
+        return Err(TraceError::Length { what, got: values.len(), expected });
+    }
+    match values.iter().position(|v| !v.is_finite()) {
+        Some(at) => Err(TraceError::NotFinite { what, at }),
+        None => Ok(()),
+    }
+}
+
+/// The error that names an observable that is not there.
+pub(super) fn unknown_observable<P: Problem>(problem: &P, name: String) -> TraceError {
+    TraceError::UnknownObservable { name, known: problem.observables().join(", ") }
+}
