@@ -30,6 +30,8 @@ pub enum EventKind {
     Fold,
     /// Another branch crosses.
     BranchPoint,
+    /// A pair of complex eigenvalues crosses the imaginary axis.
+    Hopf,
     /// A zero of the named observable (minus the requested level).
     Zero(String),
     /// A local minimum of the named observable along the branch.
@@ -47,6 +49,7 @@ impl fmt::Display for EventKind {
         match self {
             EventKind::Fold => write!(f, "fold"),
             EventKind::BranchPoint => write!(f, "branch-point"),
+            EventKind::Hopf => write!(f, "hopf"),
             EventKind::Zero(name) => write!(f, "zero-{name}"),
             EventKind::Minimum(name) => write!(f, "{name}-minimum"),
             EventKind::Maximum(name) => write!(f, "{name}-maximum"),

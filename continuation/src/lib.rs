@@ -5,6 +5,7 @@
 //! locate) → [`tracer`]. A traced [`branch`] is plain data.
 
 pub mod branch;
+mod dense_problem;
 mod events;
 pub mod linalg;
 pub mod newton;
@@ -15,6 +16,7 @@ mod step;
 pub mod tracer;
 
 pub use branch::{Branch, BranchPoint, Event, EventKind, Statistics, Stop, StopReason};
+pub use dense_problem::DenseProblem;
 pub use events::Watch;
 pub use linalg::{Facts, Matrix};
 pub use newton::{NewtonError, NewtonReport, NewtonSettings, newton};

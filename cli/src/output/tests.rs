@@ -106,7 +106,8 @@ fn the_json_has_the_contract_s_names_and_nulls() {
     );
     assert_eq!(event["residual"], 1e-14);
     let names: Vec<&str> = event.as_object().unwrap().keys().map(String::as_str).collect();
-    assert_eq!(names.len(), 9, "{names:?}");
+    assert_eq!(names.len(), 10, "{names:?}");
+    assert_eq!(event["parameter"], "z0");
     assert!(read["events"][1]["z0"].is_null());
 }
 

@@ -11,6 +11,8 @@ pub(crate) enum Candidate {
     Fold,
     /// The orientation, or the number of unstable modes without a fold, changes.
     BranchPoint,
+    /// The real part of a complex pair of eigenvalues changes sign.
+    Hopf,
     /// Observable `observable` crosses `level`.
     Value { observable: usize, level: f64, stop: bool },
     /// The slope of an observable changes sign.
@@ -35,6 +37,7 @@ impl Candidate {
     pub(crate) fn test(&self, x: &State, orientation: i8) -> f64 {
         match *self {
             Candidate::Fold => x.tp,
+            Candidate::Hopf => x.pair,
             Candidate::BranchPoint => f64::from(x.orientation * orientation),
             Candidate::Value { observable, level, .. } => x.values[observable] - level,
             Candidate::Extremum { observable } => x.slopes[observable],
@@ -157,7 +160,14 @@ impl Detector {
             self.found.push(Candidate::BranchPoint);
         } else if let (Some(before), Some(after)) = (a.unstable, b.unstable) {
             let change = before.abs_diff(after);
-            if change > usize::from(fold) {
+            // a pair that meets on the real axis on the way may have crossed the imaginary one
+            // first, hidden by a fold
+            if change > 0 && a.pairs != b.pairs && !final_say {
+                return Err(Refusal::Stability);
+            }
+            if change == 2 && !fold && crosses(a.pair, b.pair) {
+                self.found.push(Candidate::Hopf);
+            } else if change > usize::from(fold) {
                 if !final_say {
                     return Err(Refusal::Stability);
                 }
@@ -192,7 +202,7 @@ impl Detector {
                             crosses(a.p - value, p.value(x) - value)
                         }))
                 }
-                Candidate::Fold | Candidate::BranchPoint => false,
+                Candidate::Fold | Candidate::BranchPoint | Candidate::Hopf => false,
             };
             if hit {
                 self.found.push(candidate);

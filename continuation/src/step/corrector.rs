@@ -213,7 +213,7 @@ impl<'a, P: Problem> Core<'a, P> {
         self.normalise(x)?;
         let Some(facts) = self.facts else { return Err(Refusal::Singular) };
         x.orientation = facts.det_sign.unwrap_or(0);
-        x.unstable = self.count_unstable(&facts);
+        self.count_unstable(&facts, x);
         self.observe(x).map_err(Refusal::Evaluation)
     }
 
@@ -229,21 +229,30 @@ impl<'a, P: Problem> Core<'a, P> {
         Ok(())
     }
 
-    fn count_unstable(&self, facts: &BorderedFacts) -> Option<usize> {
-        match self.problem.stability() {
-            Stability::None => None,
-            Stability::EnergyHessian => match facts.core.inertia {
-                Some((negative, _)) => Some(negative.saturating_sub(self.problem.multipliers())),
-                None => {
-                    let spectrum = self.jacobian.spectrum()?;
-                    let negative = spectrum.iter().filter(|(re, _)| *re < 0.0).count();
-                    Some(negative.saturating_sub(self.problem.multipliers()))
+    /// Counts unstable modes: from the inertia where the factors know it, else from the full
+    /// spectrum of a dense Jacobian.
+    fn count_unstable(&self, facts: &BorderedFacts, x: &mut State) {
+        (x.unstable, x.pair, x.pairs) = (None, f64::NAN, 0);
+        let stability = self.problem.stability();
+        let multipliers = self.problem.multipliers();
+        match (stability, facts.core.inertia) {
+            (Stability::None, _) => {}
+            (Stability::EnergyHessian, Some((negative, _))) => {
+                x.unstable = Some(negative.saturating_sub(multipliers));
+            }
+            (Stability::Dynamics, Some((_, positive))) => x.unstable = Some(positive),
+            (_, None) => {
+                let Some(spectrum) = self.jacobian.spectrum() else { return };
+                let count = |sign: f64| spectrum.iter().filter(|(re, _)| sign * re > 0.0).count();
+                if stability == Stability::EnergyHessian {
+                    x.unstable = Some(count(-1.0).saturating_sub(multipliers));
+                } else {
+                    x.unstable = Some(count(1.0));
+                    let pairs = spectrum.iter().filter(|(_, im)| *im > 0.0).map(|(re, _)| *re);
+                    x.pairs = pairs.clone().count();
+                    x.pair = pairs.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(f64::NAN);
                 }
-            },
-            Stability::Dynamics => match facts.core.inertia {
-                Some((_, positive)) => Some(positive),
-                None => Some(self.jacobian.spectrum()?.iter().filter(|(re, _)| *re > 0.0).count()),
-            },
+            }
         }
     }
 

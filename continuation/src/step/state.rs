@@ -19,6 +19,11 @@ pub(crate) struct State {
     pub(crate) orientation: i8,
     /// Number of unstable modes.
     pub(crate) unstable: Option<usize>,
+    /// Real part of the complex pair of eigenvalues nearest to the imaginary axis; NaN without
+    /// one, or where the spectrum is not known.
+    pub(crate) pair: f64,
+    /// Number of complex pairs, where the spectrum is known.
+    pub(crate) pairs: usize,
     /// Observables.
     pub(crate) values: Vec<f64>,
     /// Derivatives of the observables along the tangent (per scaled arclength).
@@ -36,6 +41,8 @@ impl State {
             length: 1.0,
             orientation: 0,
             unstable: None,
+            pair: f64::NAN,
+            pairs: 0,
             values: vec![0.0; observables],
             slopes: vec![0.0; observables],
         }
@@ -53,6 +60,8 @@ impl State {
         self.length = other.length;
         self.orientation = other.orientation;
         self.unstable = other.unstable;
+        self.pair = other.pair;
+        self.pairs = other.pairs;
     }
 
     /// Multiplies the tangent, and all that is measured along it.

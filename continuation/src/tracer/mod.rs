@@ -424,7 +424,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let s = self.s + (s_trial - self.s) * place.at / h;
         let before = self.running_unstable;
         let after = match candidate {
-            Candidate::Fold | Candidate::BranchPoint => self.trial.unstable,
+            Candidate::Fold | Candidate::BranchPoint | Candidate::Hopf => self.trial.unstable,
             _ => before,
         };
         self.running_unstable = after;
@@ -432,6 +432,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let kind = match *candidate {
             Candidate::Fold => Some(EventKind::Fold),
             Candidate::BranchPoint => Some(EventKind::BranchPoint),
+            Candidate::Hopf => Some(EventKind::Hopf),
             Candidate::Value { observable, level, .. } => {
                 let name = self.core.problem.observables()[observable].to_owned();
                 Some(if level == 0.0 {
