@@ -57,7 +57,7 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
         values.filter(|v| drawable(*v)).fold(0.2, |a: f64, v| a.max(v.abs()))
     };
     let wide = 1.08 * largest(&mut values(shapes, |s| &s.sigma)).max(1.0);
-    let high = 1.08 * largest(&mut values(shapes, |s| &s.z).chain(plates));
+    let high = 1.08 * largest(&mut values(shapes, |s| &s.z).chain(plates)).max(1.0);
     // one unit is as long on both axes, as long as both fit
     let scale = (480.0 / wide).min(1200.0 / high);
     let (width, height) = ((wide * scale).max(120.0), (high * scale).max(120.0));
