@@ -208,9 +208,6 @@ fn reversal_at_a_sharp_fold() {
     let case = &cases()["fig12"];
     for elements in [100, 200, 400, 800] {
         for max_step in [1e-3, 3e-3, 1e-2, 3e-2, 1e-1] {
-            if elements == 800 && max_step < 3e-3 {
-                continue;
-            }
             let traced = trace(case, elements, Some(max_step));
             let what = format!("{elements} elements, max_step {max_step}");
             assert_eq!(traced.branch.stopped.reason, StopReason::Target, "{what}");
