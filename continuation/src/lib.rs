@@ -15,7 +15,10 @@ mod settings;
 mod step;
 pub mod tracer;
 
-pub use branch::{Branch, BranchPoint, Event, EventKind, Statistics, Stop, StopReason};
+pub use branch::{
+    Branch, Criticality, Crossing, Detail, Direction, Event, EventKind, FoldForm, HopfForm, Point,
+    Shape, Statistics, Stop, StopReason,
+};
 pub use dense_problem::DenseProblem;
 pub use events::Watch;
 pub use linalg::{Facts, Matrix};

@@ -120,6 +120,16 @@ pub trait Problem {
         Stability::None
     }
 
+    /// Writes the constant mass matrix of `M du/dt = f(u, p)` to `m`, a matrix of the Jacobian's
+    /// pattern that is all zero, and returns true; false (the default) is the identity.
+    ///
+    /// Eigenvalues are those of `f_u x = λ M x`; for an energy Hessian without a mass matrix `M`
+    /// is the metric.
+    fn mass(&self, m: &mut Self::Jacobian) -> bool {
+        let _ = m;
+        false
+    }
+
     /// Number of negative eigenvalues that multipliers add to an energy Hessian; they are no
     /// instabilities.
     fn multipliers(&self) -> usize {

@@ -39,6 +39,8 @@ pub struct Settings {
     pub max_iterations: usize,
     /// Largest angle between successive tangents, in radians.
     pub max_angle: f64,
+    /// Number of eigenvalues, the most unstable ones, to compute at every point.
+    pub eigenvalues: usize,
     /// Special points are located to this fraction of the scale of the unknowns.
     pub event_tolerance: f64,
 }
@@ -56,6 +58,7 @@ impl Default for Settings {
             tolerance: 1e-11,
             max_iterations: 8,
             max_angle: 0.35,
+            eigenvalues: 0,
             event_tolerance: 1e-12,
         }
     }

@@ -4,7 +4,7 @@ use super::{Observer, RunError, listen, settings};
 use crate::case::{ContactCase, Law, ResolvedCase};
 use crate::output::{ContactRow, EventRecord, Pictures, Table, TraceResult};
 use crate::pictures::{Curve, Mark, Profile, Shape};
-use continuation::BranchPoint;
+use continuation::Point;
 use shell_contact::{ContactBranch, ContactProblem, Dimensionless, Mesh, Shell, trace_contact};
 use std::time::Instant;
 
@@ -75,7 +75,7 @@ fn problem(contact: &ContactCase) -> Result<ContactProblem, shell_contact::Param
 }
 
 /// One point in the contract's columns.
-fn row(traced: &ContactBranch, index: usize, point: &BranchPoint) -> ContactRow {
+fn row(traced: &ContactBranch, index: usize, point: &Point) -> ContactRow {
     let branch = &traced.branch;
     let observed = |name: &str| {
         let at = branch.observables.iter().position(|n| n == name);

@@ -235,7 +235,7 @@ impl Matrix for Dense {
         self.solve_with(x, true);
     }
 
-    fn spectrum(&self) -> Option<Vec<(f64, f64)>> {
+    fn spectrum(&self, _mass: Option<&Self>) -> Option<Vec<(f64, f64)>> {
         let values = self.to_faer()?.eigenvalues().ok()?;
         Some(values.iter().map(|z| (z.re, z.im)).collect())
     }

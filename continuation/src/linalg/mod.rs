@@ -71,9 +71,19 @@ pub trait Matrix: Clone + Send {
     fn solve(&mut self, x: &mut [f64]);
     /// Solves `Aᵀ x = b` in place with the latest factors.
     fn solve_transpose(&mut self, x: &mut [f64]);
-    /// All eigenvalues as (real, imaginary) pairs, where a full spectrum is affordable
-    /// (small dense matrices); `None` otherwise.
-    fn spectrum(&self) -> Option<Vec<(f64, f64)>> {
+    /// All eigenvalues of `A x = λ x`, or of `A x = λ M x` with a mass matrix, as (real,
+    /// imaginary) pairs, where a full spectrum is affordable (small dense matrices); `None`
+    /// otherwise. Infinite eigenvalues (of a singular `M`) are left out.
+    fn spectrum(&self, mass: Option<&Self>) -> Option<Vec<(f64, f64)>> {
+        let _ = mass;
+        None
+    }
+    /// The real form of the complex matrix `A + i B`, of twice the dimension: entry `(j, k)`
+    /// becomes the block `[a −b; b a]` at rows `2j, 2j + 1` and columns `2k, 2k + 1`, so that
+    /// unknowns are real and imaginary parts in turn and a band stays a band. `None` where the
+    /// type cannot hold it (symmetric storage).
+    fn complex(&self, imaginary: &Self) -> Option<Self> {
+        let _ = imaginary;
         None
     }
 }

@@ -242,7 +242,7 @@ impl<'a, P: Problem> Core<'a, P> {
             }
             (Stability::Dynamics, Some((_, positive))) => x.unstable = Some(positive),
             (_, None) => {
-                let Some(spectrum) = self.jacobian.spectrum() else { return };
+                let Some(spectrum) = self.jacobian.spectrum(None) else { return };
                 let count = |sign: f64| spectrum.iter().filter(|(re, _)| sign * re > 0.0).count();
                 if stability == Stability::EnergyHessian {
                     x.unstable = Some(count(-1.0).saturating_sub(multipliers));

@@ -20,7 +20,7 @@ mod input;
 
 pub use input::{Progress, TraceError};
 
-use crate::branch::{Branch, BranchPoint, Event, EventKind, Statistics, Stop, StopReason};
+use crate::branch::{Branch, Detail, Event, EventKind, Point, Statistics, Stop, StopReason};
 use crate::events::{Candidate, Detector, Located, Role, Watch, locate};
 use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem};
@@ -51,7 +51,7 @@ pub struct Tracer<'a, P: Problem> {
     anchor_s: f64,
     s: f64,
     running_unstable: Option<usize>,
-    queue: VecDeque<BranchPoint>,
+    queue: VecDeque<Point>,
     emitted: usize,
     events: Vec<Event>,
     stop: Option<Stop>,
@@ -215,19 +215,15 @@ impl<'a, P: Problem> Tracer<'a, P> {
         self.stop = Some(Stop { reason, detail });
     }
 
-    fn point(
-        &self,
-        x: &State,
-        s: f64,
-        event: Option<usize>,
-        unstable: Option<usize>,
-    ) -> BranchPoint {
-        BranchPoint {
+    fn point(&self, x: &State, s: f64, event: Option<usize>, unstable: Option<usize>) -> Point {
+        Point {
             s,
             p: x.p,
             u: x.u.clone(),
             dp_ds: x.tp / x.length,
             unstable,
+            certified: unstable.is_some(),
+            eigenvalues: Vec::new(),
             observables: x.values.clone(),
             event,
         }
@@ -468,6 +464,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
                 unstable_after: after,
                 residual,
                 error_estimate: place.error * self.work.length,
+                detail: Detail::None,
             });
         }
         self.queue.push_back(point);
@@ -503,9 +500,9 @@ impl<'a, P: Problem> Tracer<'a, P> {
 }
 
 impl<P: Problem> Iterator for Tracer<'_, P> {
-    type Item = BranchPoint;
+    type Item = Point;
 
-    fn next(&mut self) -> Option<BranchPoint> {
+    fn next(&mut self) -> Option<Point> {
         if self.queue.is_empty() && self.stop.is_none() {
             self.advance();
         }

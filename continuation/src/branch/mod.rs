@@ -1,11 +1,17 @@
 //! What a traced branch is: points, events, and why it stopped. Plain data, serialisable.
 
+mod event;
+
+pub use event::{
+    Criticality, Crossing, Detail, Direction, Event, EventKind, FoldForm, HopfForm, Shape,
+};
+
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// One solution on a branch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct BranchPoint {
+pub struct Point {
     /// Arclength from the start, in the problem's metric.
     pub s: f64,
     /// Value of the continued parameter.
@@ -16,66 +22,17 @@ pub struct BranchPoint {
     pub dp_ds: f64,
     /// Number of unstable modes; `None` when the problem does not say what stability means.
     pub unstable: Option<usize>,
+    /// Whether that number is certain: from the inertia or from the full spectrum, and not from a
+    /// few eigenvalues found by iteration.
+    pub certified: bool,
+    /// The eigenvalues asked for by [`crate::Settings::eigenvalues`], (real, imaginary) parts,
+    /// the most unstable first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub eigenvalues: Vec<(f64, f64)>,
     /// Observables, in the order of [`crate::Problem::observables`].
     pub observables: Vec<f64>,
     /// Index into [`Branch::events`] when this point is a special point.
     pub event: Option<usize>,
-}
-
-/// What kind of special point an event is.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[non_exhaustive]
-pub enum EventKind {
-    /// The parameter turns back (limit point).
-    Fold,
-    /// Another branch crosses.
-    BranchPoint,
-    /// A pair of complex eigenvalues crosses the imaginary axis.
-    Hopf,
-    /// A zero of the named observable (minus the requested level).
-    Zero(String),
-    /// A local minimum of the named observable along the branch.
-    Minimum(String),
-    /// A local maximum of the named observable along the branch.
-    Maximum(String),
-    /// The parameter takes a requested value.
-    Target,
-    /// A kind that an application has given a name of its own.
-    Named(String),
-}
-
-impl fmt::Display for EventKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            EventKind::Fold => write!(f, "fold"),
-            EventKind::BranchPoint => write!(f, "branch-point"),
-            EventKind::Hopf => write!(f, "hopf"),
-            EventKind::Zero(name) => write!(f, "zero-{name}"),
-            EventKind::Minimum(name) => write!(f, "{name}-minimum"),
-            EventKind::Maximum(name) => write!(f, "{name}-maximum"),
-            EventKind::Target => write!(f, "target"),
-            EventKind::Named(name) => write!(f, "{name}"),
-        }
-    }
-}
-
-/// A located special point; its state is the [`BranchPoint`] at `point`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Event {
-    /// What it is.
-    pub kind: EventKind,
-    /// Index of its state in [`Branch::points`].
-    pub point: usize,
-    /// Value of the continued parameter there.
-    pub p: f64,
-    /// Number of unstable modes before, along the branch.
-    pub unstable_before: Option<usize>,
-    /// Number of unstable modes after, along the branch.
-    pub unstable_after: Option<usize>,
-    /// Largest component of the residual at the located point.
-    pub residual: f64,
-    /// Estimated error of the location, as a length in the problem's metric.
-    pub error_estimate: f64,
 }
 
 /// Why a branch ended.
@@ -150,7 +107,7 @@ pub struct Branch {
     /// Names of the observables.
     pub observables: Vec<String>,
     /// Points in order along the branch, special points included.
-    pub points: Vec<BranchPoint>,
+    pub points: Vec<Point>,
     /// Special points in order along the branch.
     pub events: Vec<Event>,
     /// Why the branch ended.

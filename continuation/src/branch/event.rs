@@ -1,0 +1,160 @@
+//! Special points: what they are and what their normal forms say.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// What kind of special point an event is.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum EventKind {
+    /// The parameter turns back (limit point).
+    Fold,
+    /// Another branch crosses.
+    BranchPoint,
+    /// A pair of complex eigenvalues crosses the imaginary axis.
+    Hopf,
+    /// A zero of the named observable (minus the requested level).
+    Zero(String),
+    /// A local minimum of the named observable along the branch.
+    Minimum(String),
+    /// A local maximum of the named observable along the branch.
+    Maximum(String),
+    /// The parameter takes a requested value.
+    Target,
+    /// A kind that an application has given a name of its own.
+    Named(String),
+}
+
+impl fmt::Display for EventKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            EventKind::Fold => write!(f, "fold"),
+            EventKind::BranchPoint => write!(f, "branch-point"),
+            EventKind::Hopf => write!(f, "hopf"),
+            EventKind::Zero(name) => write!(f, "zero-{name}"),
+            EventKind::Minimum(name) => write!(f, "{name}-minimum"),
+            EventKind::Maximum(name) => write!(f, "{name}-maximum"),
+            EventKind::Target => write!(f, "target"),
+            EventKind::Named(name) => write!(f, "{name}"),
+        }
+    }
+}
+
+/// A located special point; its state is the [`crate::Point`] at `point`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// What it is.
+    pub kind: EventKind,
+    /// Index of its state in [`crate::Branch::points`].
+    pub point: usize,
+    /// Value of the continued parameter there.
+    pub p: f64,
+    /// Number of unstable modes before, along the branch.
+    pub unstable_before: Option<usize>,
+    /// Number of unstable modes after, along the branch.
+    pub unstable_after: Option<usize>,
+    /// Largest component of the residual at the located point.
+    pub residual: f64,
+    /// Estimated error of the location, as a length in the problem's metric.
+    pub error_estimate: f64,
+    /// What the normal form says.
+    #[serde(default)]
+    pub detail: Detail,
+}
+
+/// What the normal form says of a special point.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Detail {
+    /// Nothing: a user event, or a form that could not be computed.
+    #[default]
+    None,
+    /// Of a fold.
+    Fold(FoldForm),
+    /// Of a branch point.
+    Crossing(Crossing),
+    /// Of a Hopf point.
+    Hopf(HopfForm),
+}
+
+/// A fold: `p - p₀ = ½ p″ s² + …`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FoldForm {
+    /// `d²p/ds²` in the problem's metric; positive where the parameter has a minimum.
+    pub curvature: f64,
+}
+
+/// How branches cross.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Shape {
+    /// Two branches cross, both at an angle to the parameter's zero.
+    Transcritical,
+    /// One branch is vertical there: its two halves lie on the same side of the parameter.
+    Pitchfork,
+    /// The kernel has more than one dimension: several branches.
+    Multiple,
+    /// The reduced equations are degenerate to the order computed.
+    Degenerate,
+}
+
+/// On which side the new solutions are, seen from the exchange of stability.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Criticality {
+    /// The new solutions exist where the old one is unstable in the critical mode: soft loss of
+    /// stability.
+    Supercritical,
+    /// They exist where the old one is stable in the critical mode: hard loss of stability.
+    Subcritical,
+}
+
+/// A branch point: which branches meet there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Crossing {
+    /// How they cross.
+    pub shape: Shape,
+    /// Of a pitchfork, where the problem says what stability means and the cubic coefficient is
+    /// not zero.
+    pub criticality: Option<Criticality>,
+    /// Whether the branch that was traced is the pitchfork's own, met at its vertical tangent.
+    pub from_side: bool,
+    /// Dimension of the Jacobian's kernel.
+    pub multiplicity: usize,
+    /// `d²p/dx²` along the vertical branch of a pitchfork, `x` its arclength in the problem's
+    /// metric; 0 otherwise.
+    pub curvature: f64,
+    /// Tangents of the branches that leave, other than the one that was traced; each can be
+    /// followed both ways.
+    pub leaving: Vec<Direction>,
+}
+
+/// A tangent at a branch point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Direction {
+    /// The unknowns' part.
+    pub du: Vec<f64>,
+    /// The parameter's part.
+    pub dp: f64,
+    /// Half the curvature of the parameter along it where `dp` is 0: `p - p₀ ≈ bend x²`, `x` the
+    /// multiple of the direction.
+    pub bend: f64,
+    /// Multiple of the direction at which the nonlinearity matters over the parameter's range.
+    pub amplitude: f64,
+}
+
+/// A Hopf point: periodic solutions are born.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct HopfForm {
+    /// The imaginary part of the critical eigenvalues.
+    pub frequency: f64,
+    /// First Lyapunov coefficient `l₁` (Kuznetsov, *Elements of Applied Bifurcation Theory*, Eq.
+    /// 10.35), with the eigenvector of Euclidean length 1: negative is supercritical.
+    pub lyapunov: f64,
+    /// Estimated error of it.
+    pub lyapunov_error: f64,
+    /// By its sign, where it exceeds its error.
+    pub criticality: Option<Criticality>,
+}
