@@ -12,6 +12,7 @@ pub mod newton;
 pub mod problem;
 pub mod samples;
 mod settings;
+mod singular;
 mod step;
 pub mod tracer;
 

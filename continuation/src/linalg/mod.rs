@@ -29,6 +29,8 @@ mod ldlt;
 mod symmetric_band;
 mod vector;
 
+pub(crate) use vector::max_abs;
+
 pub use band::Band;
 pub use bordered::{Bordered, BorderedFacts};
 pub use dense::Dense;
@@ -63,6 +65,11 @@ pub trait Matrix: Clone + Send {
     fn mul_transpose(&self, x: &[f64], y: &mut [f64]);
     /// `A += a · other`, both of the same pattern.
     fn axpy(&mut self, a: f64, other: &Self);
+    /// `A += a I`; returns false, and changes nothing, where the type cannot do it.
+    fn add_diagonal(&mut self, a: f64) -> bool {
+        let _ = a;
+        false
+    }
     /// Largest absolute entry, the scale to which pivots are compared.
     fn norm(&self) -> f64;
     /// Factors the current entries. Pivots smaller than `floor` in magnitude are replaced by it.

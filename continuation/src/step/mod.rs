@@ -3,11 +3,12 @@
 mod corrector;
 mod judge;
 mod size;
+mod stability;
 mod state;
 mod weights;
 
 pub(crate) use corrector::{Constraint, Core, Precision};
-pub(crate) use judge::{Quality, judge};
+pub(crate) use judge::judge;
 pub(crate) use size::StepSize;
 pub(crate) use state::State;
 pub(crate) use weights::{Weights, dot};
