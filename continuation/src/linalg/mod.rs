@@ -33,7 +33,7 @@ pub(crate) use vector::max_abs;
 
 pub use band::Band;
 pub use bordered::{Bordered, BorderedFacts};
-pub use dense::Dense;
+pub use dense::{Dense, MAX_SPECTRUM};
 pub use symmetric_band::{MAX_GROWTH, SymmetricBand};
 
 /// What a factorisation learned about its matrix.
@@ -78,6 +78,11 @@ pub trait Matrix: Clone + Send {
     fn solve(&mut self, x: &mut [f64]);
     /// Solves `Aᵀ x = b` in place with the latest factors.
     fn solve_transpose(&mut self, x: &mut [f64]);
+    /// `A += a I`, true; false (the default) where the type does not do that.
+    fn add_identity(&mut self, a: f64) -> bool {
+        let _ = a;
+        false
+    }
     /// All eigenvalues of `A x = λ x`, or of `A x = λ M x` with a mass matrix, as (real,
     /// imaginary) pairs, where a full spectrum is affordable (small dense matrices); `None`
     /// otherwise. Infinite eigenvalues (of a singular `M`) are left out.

@@ -3,4 +3,5 @@
 
 mod bordered;
 mod matrices;
+mod spectra;
 mod support;
