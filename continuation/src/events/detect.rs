@@ -75,6 +75,8 @@ fn crosses(a: f64, b: f64) -> bool {
     a * b < 0.0 || (b == 0.0 && a != 0.0)
 }
 
+/// A parameter's part of the tangent, relative to its range, below which the branch is vertical.
+const VERTICAL: f64 = 1e-9;
 /// Mismatch of a Hermite cubic above which the function is not resolved.
 const MAX_MISMATCH: f64 = 0.35;
 /// Changes smaller than this fraction of an observable's magnitude are not looked into.
@@ -139,25 +141,35 @@ impl Detector {
         }
     }
 
-    /// The special points between `a` and `b`, a scaled length `h` apart. `final_say` takes the
-    /// step as it is, where it is too short to be divided further.
+    /// The special points between `a` and `b`, a scaled length `h` apart; `range` is the scale of
+    /// the parameter. `final_say` takes the step as it is, where it is too short to be divided
+    /// further.
     pub(crate) fn detect(
         &mut self,
         a: &State,
         b: &State,
         h: f64,
+        range: f64,
         final_say: bool,
     ) -> Result<(), Refusal> {
         self.found.clear();
         let p = Cubic { h, g: [a.p, b.p], s: [a.tp, b.tp] };
-        let fold = crosses(a.tp, b.tp);
-        if !final_say && self.parameter_unresolved(&p) {
+        // where the parameter stands still to rounding, its turns are noise
+        let vertical = a.tp.abs().max(b.tp.abs()) < VERTICAL * range;
+        let into_noise = b.tp.abs() < NOISE * range;
+        if into_noise && !vertical && !final_say {
+            return Err(Refusal::Unresolved);
+        }
+        let fold = crosses(a.tp, b.tp) && !vertical && !into_noise;
+        if !final_say && !vertical && self.parameter_unresolved(&p) {
             return Err(Refusal::Unresolved);
         }
         if fold {
             self.found.push(Candidate::Fold);
         }
-        self.detect_crossings(a, b, fold, final_say)?;
+        if !vertical {
+            self.detect_crossings(a, b, fold, final_say)?;
+        }
         for k in 0..self.watched.len() {
             let candidate = self.watched[k];
             let hit = match candidate {

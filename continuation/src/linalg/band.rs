@@ -190,11 +190,6 @@ impl Matrix for Band {
         add_scaled(&mut self.entries, a, &other.entries);
     }
 
-    fn add_diagonal(&mut self, a: f64) -> bool {
-        (0..self.n).for_each(|i| self.add(i, i, a));
-        true
-    }
-
     fn norm(&self) -> f64 {
         max_abs(&self.entries)
     }

@@ -65,11 +65,6 @@ pub trait Matrix: Clone + Send {
     fn mul_transpose(&self, x: &[f64], y: &mut [f64]);
     /// `A += a · other`, both of the same pattern.
     fn axpy(&mut self, a: f64, other: &Self);
-    /// `A += a I`; returns false, and changes nothing, where the type cannot do it.
-    fn add_diagonal(&mut self, a: f64) -> bool {
-        let _ = a;
-        false
-    }
     /// Largest absolute entry, the scale to which pivots are compared.
     fn norm(&self) -> f64;
     /// Factors the current entries. Pivots smaller than `floor` in magnitude are replaced by it.

@@ -318,11 +318,6 @@ impl Matrix for SymmetricBand {
         }
     }
 
-    fn add_diagonal(&mut self, a: f64) -> bool {
-        (0..self.n).for_each(|i| self.add(i, i, a));
-        true
-    }
-
     /// Largest entry of the band plus that of the rank-one term.
     fn norm(&self) -> f64 {
         let band = max_abs(&self.entries);

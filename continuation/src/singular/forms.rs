@@ -65,6 +65,7 @@ pub(super) fn simple<P: Problem>(
         from_side: false,
         multiplicity: 1,
         curvature: 0.0,
+        traced: direction(probe, traced.clone(), 0.0, 1.0),
         leaving: Vec::new(),
     };
     let (mut bend, mut reach) = (0.0, 1.0);

@@ -176,7 +176,7 @@ impl<P: Problem> Mass<P> {
         m.set_zero();
         if !probe.problem.mass(&mut m) {
             m.set_zero();
-            if !m.add_diagonal(1.0) {
+            if !m.add_identity(1.0) {
                 return None;
             }
         }

@@ -120,14 +120,6 @@ impl<'a, P: Problem> Probe<'a, P> {
         (dot(&self.metric, &x.u) + x.p * x.p).max(0.0).sqrt()
     }
 
-    /// `[F_u F_p] x` at the assembled point.
-    pub(crate) fn apply(&self, x: &Extended, y: &mut [f64]) {
-        self.jacobian.mul(&x.u, y);
-        for (y, f) in y.iter_mut().zip(&self.by_parameter) {
-            *y += x.p * f;
-        }
-    }
-
     /// Adds `a [F_u F_p](z + h v) x_i` to `out[i]` for every `x_i`.
     fn accumulate(
         &mut self,

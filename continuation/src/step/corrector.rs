@@ -176,6 +176,8 @@ impl<'a, P: Problem> Core<'a, P> {
                 x.p = value;
             }
             let mut expected = correction;
+            // corrections that no longer shrink, of a residual that is rounding
+            let stagnant = rounding && iteration > 0 && correction > 0.1 * report.last;
             if iteration == 0 {
                 report.first = correction;
             } else {
@@ -195,7 +197,7 @@ impl<'a, P: Problem> Core<'a, P> {
                 Precision::Step => expected <= converged && correction <= near,
                 Precision::Event => correction <= 3.0 * converged,
             };
-            if done || (rounding && correction <= near) {
+            if done || (stagnant && correction <= near) {
                 self.finish(constraint, x)?;
                 return Ok(report);
             }
@@ -207,7 +209,7 @@ impl<'a, P: Problem> Core<'a, P> {
     /// unknowns vanish, nothing else says how small a correction can become.
     fn residual_is_rounding(&self, x: &State) -> bool {
         let terms = self.bordered.core_norm() * max_abs(&x.u)
-            + max_abs(self.bordered.column(0)) * x.p.abs().max(self.weights.parameter);
+            + max_abs(self.bordered.column(0)) * x.p.abs();
         max_abs(&self.r) <= ROUNDING * terms
     }
 

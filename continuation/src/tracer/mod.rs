@@ -18,6 +18,7 @@
 mod closure;
 mod input;
 mod special;
+mod switching;
 
 pub use input::{Progress, TraceError};
 
@@ -27,10 +28,11 @@ use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem};
 use crate::settings::Settings;
 use crate::step::{Constraint, Core, Precision, Refusal, State, StepSize, Weights, judge};
-use input::{check, unknown_observable};
+use input::{check, range, unknown_observable};
 use special::Special;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
+use switching::Departure;
 
 /// Traces one branch; yields its points in order, special points included.
 pub struct Tracer<'a, P: Problem> {
@@ -47,6 +49,8 @@ pub struct Tracer<'a, P: Problem> {
     trial: State,
     work: State,
     left_start: bool,
+    // set until the first step away from a branch point is done
+    departure: Option<Departure>,
     // the latest step that crossed to the other orientation, and where it began
     crossing: Option<f64>,
     anchor: State,
@@ -86,11 +90,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let report = newton(problem, &mut start.u, p, &NewtonSettings::default())
             .map_err(TraceError::Start)?;
 
-        let range = match (settings.target, settings.domain) {
-            (Some(target), _) if target != start.p => (target - start.p).abs(),
-            (_, Some((lo, hi))) => hi - lo,
-            _ => parameters[which].scale.abs().max(f64::MIN_POSITIVE),
-        };
+        let range = range(&settings, start.p, &parameters[which]);
         let increasing = settings
             .increasing
             .unwrap_or_else(|| settings.target.is_none_or(|target| target > start.p));
@@ -114,6 +114,18 @@ impl<'a, P: Problem> Tracer<'a, P> {
             }
         })
         .map_err(TraceError::Tangent)?;
+        Self::set_up(core, start, p, settings, range)
+    }
+
+    /// The tracer that stands at `start`.
+    fn set_up(
+        core: Core<'a, P>,
+        start: State,
+        p: &[f64],
+        settings: Settings,
+        range: f64,
+    ) -> Result<Self, TraceError> {
+        let problem = core.problem;
         let size = StepSize::new(&settings, range / core.weights.parameter, start.length);
         let detector = Detector::new(&[], problem.observables(), settings.target, settings.domain)
             .map_err(|name| unknown_observable(problem, name))?;
@@ -129,6 +141,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             trial: start.clone(),
             work: start.clone(),
             left_start: false,
+            departure: None,
             crossing: None,
             anchor: start.clone(),
             anchor_s: 0.0,
@@ -237,6 +250,9 @@ impl<'a, P: Problem> Tracer<'a, P> {
             let detail = format!("the limit of {} points was reached", self.settings.max_points);
             return self.end(StopReason::MaxPoints, detail);
         }
+        if let Some(departure) = self.departure.take() {
+            return self.depart(&departure);
+        }
         let length = self.current.length;
         let shortest = self.size.shortest(length);
         let mut h = self.size.h.clamp(shortest, self.size.longest(length).max(shortest));
@@ -308,10 +324,11 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let secant = core.secant(current, trial);
         let tangents = core.weights.dot(&current.mtu, current.tp, &trial.tu, trial.tp);
         let quality = judge(settings, trial, h, &corrected, secant, tangents)?;
-        detector.detect(current, trial, h, final_say)?;
+        detector.detect(current, trial, h, core.weights.parameter, final_say)?;
         let s_trial = self.s + self.metric_distance();
-        let special = self.locate_all(h, final_say)?;
+        // before the location, whose result is left in the same work space
         let returned = self.passes_start(h);
+        let special = self.locate_all(h, final_say)?;
         self.accept(h, &special, s_trial, returned)?;
         let length = self.current.length;
         self.size.accept(h, &quality, &self.settings, length);
