@@ -186,7 +186,8 @@ impl<P: Problem> Mass<P> {
     /// `f_u − iω M` in real form.
     fn shifted(&self, probe: &Probe<'_, P>, omega: f64) -> Option<P::Jacobian> {
         let mut imaginary = self.0.clone();
-        imaginary.axpy(-omega - 1.0, &self.0);
+        imaginary.set_zero();
+        imaginary.axpy(-omega, &self.0);
         probe.jacobian.complex(&imaginary)
     }
 
