@@ -49,6 +49,8 @@ struct Scratch {
 const PLACES: [f64; 6] = [1.0, -1.0, 2.0, -2.0, 3.0, -3.0];
 /// Step relative to the length over which `f` varies.
 const STEP: f64 = 4e-3;
+/// Shortest step relative to the variable itself.
+const SHORTEST: f64 = 1e-8;
 /// Disagreement of the orders four and six above which the length is sought anew.
 const DISAGREEMENT: f64 = 1e-7;
 /// Disagreement that is good enough to stop looking for a better length.
@@ -99,6 +101,7 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
             None => max_abs(&scratch.u),
             Some(k) => scratch.p[k].abs().max(self.parameters[k].scale.abs()),
         };
+        let here = here.max(known);
         let centre = if here > 0.0 { here } else { 1.0 };
         // lengths ever farther from the magnitude at hand; the one whose orders agree best wins
         let mut least = f64::INFINITY;
@@ -125,7 +128,8 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
     fn differ(&self, scratch: &mut Scratch, i: usize, length: f64, out: &mut [f64]) -> f64 {
         let Scratch { u, p, values, .. } = scratch;
         // a power of two: the shifted values differ by exactly the step
-        let h = (STEP * length).log2().round().exp2();
+        let here = if i < self.n { u[i] } else { p[i - self.n] };
+        let h = (STEP * length).max(SHORTEST * here.abs()).log2().round().exp2();
         for (place, value) in PLACES.into_iter().zip(values.iter_mut()) {
             let slot = if i < self.n { &mut u[i] } else { &mut p[i - self.n] };
             let kept = *slot;
@@ -147,7 +151,12 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
             let difference = (sixth - fourth).abs();
             apart = if difference.is_nan() { f64::INFINITY } else { apart.max(difference) };
         }
-        if size > 0.0 { apart / size } else { apart }
+        let terms = values.iter().map(|v| max_abs(v)).fold(0.0, f64::max);
+        if apart > 0.0 && apart <= 64.0 * f64::EPSILON * terms / h {
+            return 0.5 * AGREEMENT; // rounding: nothing is wrong with the length
+        }
+        // a derivative that vanishes exactly says nothing for or against the length
+        if size > 0.0 { apart / size } else { 1.0 }
     }
 
     fn place(&self, u: &[f64], p: &[f64]) {

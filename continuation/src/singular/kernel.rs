@@ -16,7 +16,7 @@
 
 use super::probe::{Extended, Probe};
 use super::small::least_squares;
-use crate::linalg::Bordered;
+use crate::linalg::{Bordered, Dense, Matrix};
 use crate::problem::{EvalError, Problem};
 
 const MAX_ITERATIONS: usize = 14;
@@ -25,15 +25,19 @@ const CONVERGED: f64 = 1e-12;
 /// Corrections that no longer shrink are rounding if they are below this.
 const ROUNDING: f64 = 1e-8;
 
+/// Points nearer to each other than this, in natural amplitudes, are one with a larger kernel.
+const COINCIDENT: f64 = 1e-8;
+
 /// Why no singular point was found.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Failure {
     /// The problem has no value on the way.
     Evaluation(EvalError),
     /// The iteration leaves the neighbourhood of its start or does not converge.
     NoConvergence,
-    /// The kernel is smaller than was asked for.
-    Smaller,
+    /// The kernel is smaller than was asked for: these are estimates of the points, near to each
+    /// other, where it has one dimension.
+    Apart(Vec<Extended>),
 }
 
 impl From<EvalError> for Failure {
@@ -240,8 +244,8 @@ fn finish<P: Problem>(
             }
         }
     }
-    if curved > 0.0 && defect > 1e-6 * curved {
-        return Err(Failure::Smaller);
+    if curved > 0.0 && defect > COINCIDENT * curved {
+        return Err(Failure::Apart(local.apart(&z)));
     }
     let unfolding = super::max_abs(beta);
     let gap = if curved > 0.0 { (unfolding / curved).sqrt() } else { 0.0 };
@@ -304,6 +308,27 @@ impl Local {
     /// The derivative of the defect, row by row.
     fn matrix(&self) -> Vec<Vec<f64>> {
         self.form.iter().flatten().cloned().collect()
+    }
+
+    /// Where along the branch the single modes become critical: the real eigenvalues `s` of
+    /// `G − s G_s` on the vectors other than the branch's own.
+    fn apart(&self, z: &Extended) -> Vec<Extended> {
+        let k = self.left.len();
+        let (mut g, mut slope) = (Dense::new(k), Dense::new(k));
+        for j in 0..k {
+            for i in 0..k {
+                g.set(j, i, self.g[j][i + 1]);
+                slope.set(j, i, self.form[j][i + 1][0]);
+            }
+        }
+        let values = g.spectrum(Some(&slope)).unwrap_or_default();
+        let real = values.into_iter().filter(|(re, im)| im.abs() <= 1e-6 * re.hypot(*im));
+        real.map(|(s, _)| {
+            let mut seed = z.clone();
+            seed.add(s, &self.right[0]);
+            seed
+        })
+        .collect()
     }
 
     fn defect(&self) -> Vec<f64> {

@@ -44,49 +44,80 @@ pub(crate) struct Crossed {
     /// Estimated error, as a scaled length.
     pub(crate) error: f64,
     pub(crate) crossing: Crossing,
+    pub(crate) state: State,
+}
+
+/// The step in which a branch point is sought.
+#[derive(Clone, Copy)]
+struct Segment<'s> {
+    a: &'s State,
+    b: &'s State,
+    /// Scaled length.
+    h: f64,
+    /// Cosine between the tangents at both ends.
+    bend: f64,
 }
 
 /// Locates the branch point with a kernel of `k` dimensions between `a` and `b`, a scaled length
-/// `h` apart; its state goes to `x`.
-pub(crate) fn locate_branch_point<P: Problem>(
+/// `h` apart, or the `k` simple ones that lie there close together.
+pub(crate) fn locate_branch_points<P: Problem>(
     core: &mut Core<'_, P>,
     a: &State,
     b: &State,
     h: f64,
     k: usize,
-    x: &mut State,
-) -> Result<Crossed, Refusal> {
+) -> Result<Vec<Crossed>, Refusal> {
     let mut probe = core.probe();
+    let segment = Segment { a, b, h, bend: bend(core, a, b) };
     let mut refusal = Refusal::Orientation;
+    let mut found = None;
     for seed in SEEDS {
-        match attempt(core, &mut probe, a, b, h, k, seed * h, x) {
-            Ok(crossed) => {
-                core.statistics.newton_iterations += probe.assemblies;
-                return Ok(crossed);
-            }
+        let mut x = a.clone();
+        interpolate(a, b, h, segment.bend, seed * h, &mut x);
+        let z = Extended { u: x.u.clone(), p: x.p };
+        match attempt(core, &mut probe, segment, &z, k, &mut x) {
+            Ok(crossed) => found = Some(vec![crossed]),
             Err(Failure::Evaluation(error)) => refusal = Refusal::Evaluation(error),
+            Err(Failure::Apart(seeds)) if seeds.len() == k => {
+                let one = |z: &Extended| attempt(core, &mut probe, segment, z, 1, &mut x).ok();
+                found = distinct(seeds.iter().map_while(one).collect(), k);
+            }
             Err(_) => {}
+        }
+        if found.is_some() {
+            break;
         }
     }
     core.statistics.newton_iterations += probe.assemblies;
-    Err(refusal)
+    found.ok_or(refusal)
 }
 
+/// The points in order, if there are `k` different ones.
+fn distinct(mut points: Vec<Crossed>, k: usize) -> Option<Vec<Crossed>> {
+    points.sort_by(|a, b| a.at.total_cmp(&b.at));
+    let apart = points.windows(2).all(|w| w[1].at - w[0].at > 10.0 * (w[0].error + w[1].error));
+    (points.len() == k && apart).then_some(points)
+}
+
+/// Newton's method from `z`; the point found must be on the branch, within the step, and be crossed
+/// along the branch.
 fn attempt<P: Problem>(
     core: &mut Core<'_, P>,
     probe: &mut Probe<'_, P>,
-    a: &State,
-    b: &State,
-    h: f64,
+    segment: Segment<'_>,
+    z: &Extended,
     k: usize,
-    seed: f64,
     x: &mut State,
 ) -> Result<Crossed, Failure> {
-    let bend = bend(core, a, b);
-    interpolate(a, b, h, bend, seed, x);
-    let z = Extended { u: x.u.clone(), p: x.p };
+    let Segment { a, b, h, bend } = segment;
+    let along = |probe: &mut Probe<'_, P>, z: &Extended| {
+        let mut d = z.clone();
+        d.add(-1.0, &Extended { u: a.u.clone(), p: a.p });
+        probe.covector(&Extended { u: a.tu.clone(), p: a.tp }).dot(&d)
+    };
+    let seed = along(probe, z).clamp(0.0, h);
     let tangent = tangent_at(probe, a, b, h, bend, seed);
-    let mut found = kernel::find(probe, &z, &tangent, k)?;
+    let mut found = kernel::find(probe, z, &tangent, k)?;
     if found.gap > MAX_GAP {
         return Err(Failure::NoConvergence);
     }
@@ -97,8 +128,7 @@ fn attempt<P: Problem>(
         d
     };
     let from_a = from(a, &found.z);
-    let ahead = Extended { u: a.tu.clone(), p: a.tp };
-    let at = probe.covector(&ahead).dot(&from_a);
+    let at = along(probe, &found.z);
     if !(-1e-6 * h..=h * (1.0 + 1e-6)).contains(&at) {
         return Err(Failure::NoConvergence);
     }
@@ -141,7 +171,8 @@ fn attempt<P: Problem>(
         }
     }
     core.place(x, &found.z, &analysed.traced).map_err(Failure::Evaluation)?;
-    Ok(Crossed { at, error: found.correction.max(f64::EPSILON), crossing: analysed.crossing })
+    let error = found.correction.max(f64::EPSILON);
+    Ok(Crossed { at, error, crossing: analysed.crossing, state: x.clone() })
 }
 
 /// Direction of the interpolated branch at a distance `at`, of unit scaled length.

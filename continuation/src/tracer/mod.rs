@@ -360,8 +360,9 @@ impl<'a, P: Problem> Tracer<'a, P> {
     ) -> Result<(), Refusal> {
         let (events_before, queue_before) = (self.events.len(), self.queue.len());
         let running = self.running_unstable;
-        for found in special {
-            if let Err(refusal) = self.record(h, found, s_trial, special.len()) {
+        for (i, found) in special.iter().enumerate() {
+            let last = i + 1 == special.len();
+            if let Err(refusal) = self.record(h, found, s_trial, last) {
                 self.events.truncate(events_before);
                 self.queue.truncate(queue_before);
                 self.running_unstable = running;

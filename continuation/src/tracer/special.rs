@@ -4,8 +4,8 @@ use super::Tracer;
 use crate::branch::{Detail, Event, EventKind, StopReason};
 use crate::events::{Candidate, Located, Role, locate};
 use crate::problem::Problem;
-use crate::singular::{fold_form, locate_branch_point, locate_hopf};
-use crate::step::Refusal;
+use crate::singular::{fold_form, locate_branch_points, locate_hopf};
+use crate::step::{Refusal, State};
 
 /// Part of the step to which a Hopf point is bracketed before Newton's method takes over.
 const BRACKET: f64 = 1e-3;
@@ -15,30 +15,38 @@ pub(super) struct Special {
     pub(super) candidate: Candidate,
     pub(super) place: Located,
     detail: Detail,
+    state: State,
 }
 
 impl<P: Problem> Tracer<'_, P> {
     /// Locates every candidate of the step, sorted along it; the trace's end cuts the rest off.
     pub(super) fn locate_all(&mut self, h: f64, final_say: bool) -> Result<Vec<Special>, Refusal> {
+        if self.detector.found().is_empty() {
+            return Ok(Vec::new());
+        }
         let candidates = self.detector.found().to_vec();
         let mut located: Vec<Special> = Vec::with_capacity(candidates.len());
         // branch points first: a pitchfork met from its side is not a fold besides
-        let crossing = |c: &&Candidate| matches!(c, Candidate::BranchPoint { .. });
         let mut own_fold = false;
-        for candidate in candidates.iter().filter(crossing) {
-            let special = self.locate_one(h, candidate, final_say)?;
+        for candidate in &candidates {
+            if let Candidate::BranchPoint { kernel } = *candidate {
+                self.locate_crossings(h, kernel, final_say, &mut located)?;
+            }
+        }
+        for special in &located {
             if let Detail::Crossing(crossing) = &special.detail {
                 own_fold |= crossing.from_side;
             }
-            located.push(special);
         }
         let fold_too = !located.is_empty() && candidates.contains(&Candidate::Fold);
         if fold_too && !own_fold && !final_say {
             return Err(Refusal::SeveralEvents);
         }
-        for candidate in candidates.iter().filter(|c| !crossing(c)) {
-            if !(own_fold && *candidate == Candidate::Fold) {
-                located.push(self.locate_one(h, candidate, final_say)?);
+        for candidate in &candidates {
+            let done = matches!(candidate, Candidate::BranchPoint { .. })
+                || (own_fold && *candidate == Candidate::Fold);
+            if !done {
+                located.push(self.locate_one(h, candidate)?);
             }
         }
         located.sort_by(|a, b| a.place.at.total_cmp(&b.place.at));
@@ -48,33 +56,50 @@ impl<P: Problem> Tracer<'_, P> {
         Ok(located)
     }
 
-    /// Locates a candidate; its state is in the work space.
-    fn locate_one(
+    fn locate_crossings(
         &mut self,
         h: f64,
-        candidate: &Candidate,
+        kernel: usize,
         final_say: bool,
-    ) -> Result<Special, Refusal> {
+        located: &mut Vec<Special>,
+    ) -> Result<(), Refusal> {
+        let Self { core, current: a, trial: b, work, settings, .. } = self;
+        let candidate = Candidate::BranchPoint { kernel };
+        match locate_branch_points(core, a, b, h, kernel) {
+            Ok(found) => {
+                for one in found {
+                    let kernel = one.crossing.multiplicity;
+                    located.push(Special {
+                        candidate: Candidate::BranchPoint { kernel },
+                        place: Located { at: one.at, error: one.error },
+                        detail: Detail::Crossing(one.crossing),
+                        state: one.state,
+                    });
+                }
+            }
+            Err(refusal) if !final_say => return Err(refusal),
+            // steps cannot become shorter: as near as bisection comes
+            Err(_) => {
+                let tolerance = settings.event_tolerance;
+                let place = match locate(core, a, b, h, &candidate, tolerance, work) {
+                    Ok(place) => place,
+                    Err(_) => {
+                        work.copy_from(b);
+                        Located { at: h, error: h }
+                    }
+                };
+                let state = work.clone();
+                located.push(Special { candidate, place, detail: Detail::None, state });
+            }
+        }
+        Ok(())
+    }
+
+    /// Locates a candidate other than a branch point.
+    fn locate_one(&mut self, h: f64, candidate: &Candidate) -> Result<Special, Refusal> {
         let Self { core, current: a, trial: b, work, settings, .. } = self;
         let tolerance = settings.event_tolerance;
         let (place, detail) = match *candidate {
-            Candidate::BranchPoint { kernel } => {
-                match locate_branch_point(core, a, b, h, kernel, work) {
-                    Ok(found) => {
-                        let place = Located { at: found.at, error: found.error };
-                        (place, Detail::Crossing(found.crossing))
-                    }
-                    Err(refusal) if !final_say => return Err(refusal),
-                    // steps cannot become shorter: as near as bisection comes
-                    Err(_) => match locate(core, a, b, h, candidate, tolerance, work) {
-                        Ok(place) => (place, Detail::None),
-                        Err(_) => {
-                            work.copy_from(b);
-                            (Located { at: h, error: h }, Detail::None)
-                        }
-                    },
-                }
-            }
             Candidate::Hopf => {
                 let place = locate(core, a, b, h, candidate, BRACKET * h, work)?;
                 let (at, omega) = (place.at, work.frequency);
@@ -100,25 +125,25 @@ impl<P: Problem> Tracer<'_, P> {
                 (place, detail)
             }
         };
-        Ok(Special { candidate: *candidate, place, detail })
+        Ok(Special { candidate: *candidate, place, detail, state: work.clone() })
     }
 
     /// Records a located state as a point and, unless it only lands on a parameter value, as an
-    /// event. The state is in the work space if the step has no other special point.
+    /// event. `last` says that no further one follows in this step.
     pub(super) fn record(
         &mut self,
         h: f64,
         special: &Special,
         s_trial: f64,
-        specials: usize,
+        last: bool,
     ) -> Result<(), Refusal> {
-        let Special { candidate, place, detail } = special;
-        if specials > 1 {
-            self.locate_one(h, candidate, true)?;
-        }
+        let Special { candidate, place, detail, state } = special;
         let s = self.s + (s_trial - self.s) * place.at / h;
         let before = self.running_unstable;
         let after = match candidate {
+            Candidate::BranchPoint { kernel } if !last => {
+                between(before, self.trial.unstable, *kernel)
+            }
             Candidate::Fold | Candidate::BranchPoint { .. } | Candidate::Hopf => {
                 self.trial.unstable
             }
@@ -127,22 +152,22 @@ impl<P: Problem> Tracer<'_, P> {
         self.running_unstable = after;
         let index = self.emitted + self.queue.len();
         let kind = self.kind(candidate);
-        let residual = self.core.residual(&self.work).map_err(Refusal::Evaluation)?;
+        let residual = self.core.residual(state).map_err(Refusal::Evaluation)?;
         let unstable = match (before, after) {
             (Some(a), Some(b)) => Some(a.min(b)),
             _ => before,
         };
         let event = kind.as_ref().map(|_| self.events.len());
-        let point = self.point(&self.work, s, event, unstable);
+        let point = self.point(state, s, event, unstable);
         if let Some(kind) = kind {
             self.events.push(Event {
                 kind,
                 point: index,
-                p: self.work.p,
+                p: state.p,
                 unstable_before: before,
                 unstable_after: after,
                 residual,
-                error_estimate: place.error * self.work.length,
+                error_estimate: place.error * state.length,
                 detail: detail.clone(),
             });
         }
@@ -182,4 +207,10 @@ impl<P: Problem> Tracer<'_, P> {
             Candidate::Parameter { .. } => None,
         }
     }
+}
+
+/// The count after the first of several crossings, of `kernel` modes, on the way to `after`.
+fn between(before: Option<usize>, after: Option<usize>, kernel: usize) -> Option<usize> {
+    let (before, after) = (before?, after?);
+    Some(if after > before { before + kernel } else { before.saturating_sub(kernel) })
 }
