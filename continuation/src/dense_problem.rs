@@ -33,8 +33,13 @@ pub struct DenseProblem<F> {
     parameters: Vec<Parameter>,
     stability: Stability,
     f: F,
+    names: Vec<&'static str>,
+    observables: Vec<Box<Observable>>,
     scratch: RefCell<Scratch>,
 }
+
+/// A scalar function of unknowns and parameters.
+type Observable = dyn Fn(&[f64], &[f64]) -> f64;
 
 struct Scratch {
     u: Vec<f64>,
@@ -70,13 +75,34 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
             best: vec![0.0; n],
         };
         let scratch = RefCell::new(scratch);
-        DenseProblem { n, parameters, stability: Stability::Dynamics, f, scratch }
+        DenseProblem {
+            n,
+            parameters,
+            stability: Stability::Dynamics,
+            f,
+            names: Vec::new(),
+            observables: Vec::new(),
+            scratch,
+        }
     }
 
     /// What the Jacobian's eigenvalues mean, if not [`Stability::Dynamics`].
     #[must_use]
     pub fn with_stability(mut self, stability: Stability) -> Self {
         self.stability = stability;
+        self
+    }
+
+    /// Adds a scalar function of unknowns and parameters, to be reported at every point and to
+    /// be watched ([`crate::Watch`]).
+    #[must_use]
+    pub fn observing(
+        mut self,
+        name: &'static str,
+        value: impl Fn(&[f64], &[f64]) -> f64 + 'static,
+    ) -> Self {
+        self.names.push(name);
+        self.observables.push(Box::new(value));
         self
     }
 
@@ -210,5 +236,16 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> Problem for DenseProblem<F> {
 
     fn stability(&self) -> Stability {
         self.stability
+    }
+
+    fn observables(&self) -> &[&'static str] {
+        &self.names
+    }
+
+    fn observe(&self, u: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
+        for (out, observable) in out.iter_mut().zip(&self.observables) {
+            *out = observable(u, p);
+        }
+        Ok(())
     }
 }

@@ -6,6 +6,9 @@
 
 pub mod branch;
 mod dense_problem;
+mod derivative_check;
+#[cfg(feature = "dual")]
+mod dual_problem;
 mod events;
 pub mod linalg;
 pub mod newton;
@@ -21,6 +24,9 @@ pub use branch::{
     Shape, Statistics, Stop, StopReason,
 };
 pub use dense_problem::DenseProblem;
+pub use derivative_check::{DerivativeCheck, check_derivatives};
+#[cfg(feature = "dual")]
+pub use dual_problem::{DualProblem, Number, Residual};
 pub use events::Watch;
 pub use linalg::{Facts, Matrix};
 pub use newton::{NewtonError, NewtonReport, NewtonSettings, newton};

@@ -193,7 +193,7 @@ impl<P: Problem> Tracer<'_, P> {
             Candidate::Fold => Some(EventKind::Fold),
             Candidate::BranchPoint { .. } => Some(EventKind::BranchPoint),
             Candidate::Hopf => Some(EventKind::Hopf),
-            Candidate::Value { observable, level, .. } if level == 0.0 => {
+            Candidate::Value { observable, level: 0.0, .. } => {
                 Some(EventKind::Zero(name(observable)))
             }
             Candidate::Value { observable, .. } => {
