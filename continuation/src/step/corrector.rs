@@ -10,6 +10,7 @@ use super::{Refusal, State, Weights};
 use crate::branch::Statistics;
 use crate::linalg::{Bordered, BorderedFacts, max_abs};
 use crate::problem::{EvalError, ParamId, Problem, check_finite};
+use crate::settings::Settings;
 use crate::singular::{Extended, Probe};
 
 /// The scalar equation that closes the system.
@@ -72,8 +73,7 @@ impl<'a, P: Problem> Core<'a, P> {
         which: ParamId,
         p: &[f64],
         weights: Weights,
-        tolerance: f64,
-        max_iterations: usize,
+        settings: &Settings,
     ) -> Self {
         let n = problem.dim();
         let m = problem.observables().len();
@@ -83,13 +83,13 @@ impl<'a, P: Problem> Core<'a, P> {
             weights,
             statistics: Statistics::default(),
             wanted: vec![false; m],
-            tolerance,
-            max_iterations,
+            tolerance: settings.tolerance,
+            max_iterations: settings.max_iterations,
             p: p.to_vec(),
             jacobian: problem.new_jacobian(),
             bordered: Bordered::new(n, 1),
             facts: None,
-            stability: StabilityCount::new(problem),
+            stability: StabilityCount::new(problem, settings.eigenvalues),
             r: vec![0.0; n],
             du: vec![0.0; n],
             mdu: vec![0.0; n],
@@ -229,6 +229,10 @@ impl<'a, P: Problem> Core<'a, P> {
     /// Everything at `x` that follows from its tangent, which need not be normalised yet.
     fn complete(&mut self, x: &mut State) -> Result<(), Refusal> {
         self.normalise(x)?;
+        if self.stability.wants_eigenvalues() {
+            self.assemble(&x.u, x.p).map_err(Refusal::Evaluation)?;
+            self.facts = Some(self.bordered.factor(&mut self.jacobian));
+        }
         let Some(facts) = self.facts else { return Err(Refusal::Singular) };
         x.orientation = facts.det_sign.unwrap_or(0);
         self.stability.judge(self.problem, &mut self.jacobian, facts.core.inertia, x);

@@ -95,14 +95,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             .increasing
             .unwrap_or_else(|| settings.target.is_none_or(|target| target > start.p));
         let unit = Weights { unknowns: 1.0, parameter: 1.0 };
-        let mut core = Core::new(
-            problem,
-            ParamId(which),
-            p,
-            unit,
-            settings.tolerance,
-            settings.max_iterations,
-        );
+        let mut core = Core::new(problem, ParamId(which), p, unit, &settings);
         core.statistics.newton_iterations += report.iterations;
         let natural = problem.unknown_scale(ParamId(which));
         core.start(&mut start, increasing, |du_dp, size| match natural {

@@ -95,14 +95,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
                 Weights { unknowns: if unknowns > 0.0 { unknowns } else { 1.0 }, parameter: range }
             }
         };
-        let mut core = Core::new(
-            problem,
-            ParamId(which),
-            &p,
-            weights,
-            settings.tolerance,
-            settings.max_iterations,
-        );
+        let mut core = Core::new(problem, ParamId(which), &p, weights, &settings);
         let sign = if forward { 1.0 } else { -1.0 };
         let mut start = State::new(n, problem.observables().len());
         let mut tangent = Extended { u: direction.du.clone(), p: direction.dp };
