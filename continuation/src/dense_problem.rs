@@ -47,6 +47,8 @@ struct Scratch {
     values: [Vec<f64>; 6],
     /// Length over which `f` varies along each unknown and parameter; 0 until it is known.
     lengths: Vec<f64>,
+    /// Largest derivative along each so far.
+    sizes: Vec<f64>,
     best: Vec<f64>,
 }
 
@@ -72,6 +74,7 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
             p: vec![0.0; parameters.len()],
             values: std::array::from_fn(|_| vec![0.0; n]),
             lengths: vec![0.0; n + parameters.len()],
+            sizes: vec![0.0; n + parameters.len()],
             best: vec![0.0; n],
         };
         let scratch = RefCell::new(scratch);
@@ -121,6 +124,7 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
         let scratch = &mut *scratch;
         let known = scratch.lengths[i];
         if known > 0.0 && self.differ(scratch, i, known, out) <= DISAGREEMENT {
+            scratch.sizes[i] = scratch.sizes[i].max(max_abs(out));
             return;
         }
         let here = match i.checked_sub(self.n) {
@@ -146,13 +150,14 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
         }
         if least.is_finite() {
             out.copy_from_slice(&scratch.best);
+            scratch.sizes[i] = scratch.sizes[i].max(max_abs(out));
         }
     }
 
     /// The difference with a step for a given length, and by how much two orders disagree,
     /// relative to the derivative.
     fn differ(&self, scratch: &mut Scratch, i: usize, length: f64, out: &mut [f64]) -> f64 {
-        let Scratch { u, p, values, .. } = scratch;
+        let Scratch { u, p, values, sizes, .. } = scratch;
         // a power of two: the shifted values differ by exactly the step
         let here = if i < self.n { u[i] } else { p[i - self.n] };
         let h = (STEP * length).max(SHORTEST * here.abs()).log2().round().exp2();
@@ -178,11 +183,15 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
             apart = if difference.is_nan() { f64::INFINITY } else { apart.max(difference) };
         }
         let terms = values.iter().map(|v| max_abs(v)).fold(0.0, f64::max);
+        if !apart.is_finite() {
+            return f64::INFINITY;
+        }
         if apart > 0.0 && apart <= 64.0 * f64::EPSILON * terms / h {
             return 0.5 * AGREEMENT; // rounding: nothing is wrong with the length
         }
-        // a derivative that vanishes exactly says nothing for or against the length
-        if size > 0.0 { apart / size } else { 1.0 }
+        // a derivative that vanishes exactly says nothing for or against the length, and one that
+        // is about to vanish little
+        if size > 0.0 { apart / size.max(1e-2 * sizes[i]) } else { 1.0 }
     }
 
     fn place(&self, u: &[f64], p: &[f64]) {
