@@ -171,7 +171,7 @@ fn attempt<P: Problem>(
         }
     }
     core.place(x, &found.z, &analysed.traced).map_err(Failure::Evaluation)?;
-    let error = found.correction.max(f64::EPSILON);
+    let error = found.correction.max(found.gap).max(f64::EPSILON);
     Ok(Crossed { at, error, crossing: analysed.crossing, state: x.clone() })
 }
 

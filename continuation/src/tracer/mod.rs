@@ -249,6 +249,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let length = self.current.length;
         let shortest = self.size.shortest(length);
         let mut h = self.size.h.clamp(shortest, self.size.longest(length).max(shortest));
+        let first = h;
         loop {
             let final_say = h <= self.size.resolution(length);
             match self.attempt(h, final_say) {
@@ -276,7 +277,9 @@ impl<'a, P: Problem> Tracer<'a, P> {
                         return self.end(
                             StopReason::StepTooSmall,
                             format!(
-                                "at {name} = {p:.10} even a step of {:.1e} was refused: {refusal}",
+                                "at {name} = {p:.10} steps from {:.1e} down to {:.1e} were refused, \
+                                 the last because: {refusal}",
+                                first * length,
                                 2.0 * h * length,
                             ),
                         );
