@@ -102,7 +102,8 @@ pub fn newton<P: Problem>(
             return Err(NewtonError::Singular { iterations });
         }
         longest = longest.max(correction);
-        let converged = settings.tolerance * longest.max(length(u, &mut m));
+        let size = length(u, &mut m);
+        let converged = settings.tolerance * longest.max(size);
         // corrections that no longer shrink, of a residual that is rounding
         let stagnant = correction > 0.1 * last;
         if stagnant && residual_is_rounding(problem, u, p, &r, &mut m, jacobian.norm()) {
@@ -129,6 +130,10 @@ pub fn newton<P: Problem>(
             }
             damping /= 2.0;
             if damping < 1e-6 {
+                // a correction that no step makes shorter is rounding if it is this small
+                if correction <= settings.tolerance * (1.0 + size) && cause.is_none() {
+                    return Ok(NewtonReport { iterations, correction });
+                }
                 return Err(NewtonError::Stuck { iterations, correction, cause });
             }
         }

@@ -89,6 +89,10 @@ fn problem(params: &Params, elements: usize) -> ContactProblem {
 
 fn trace(case: &Case, elements: usize, max_step: Option<f64>) -> ContactBranch {
     let settings = Settings { target: Some(case.z_end), max_step, ..Settings::default() };
+    traced(case, elements, settings)
+}
+
+fn traced(case: &Case, elements: usize, settings: Settings) -> ContactBranch {
     let problem = problem(&case.params, elements);
     trace_contact(&problem, case.z_start, settings, &mut |_| ControlFlow::Continue(())).unwrap()
 }
@@ -229,6 +233,35 @@ fn reversal_at_a_sharp_fold() {
                 traced.branch.points.len(),
                 traced.branch.statistics
             );
+        }
+    }
+}
+
+/// From a hundredth to a hundred times the step of the command line.
+#[test]
+fn same_special_points_at_every_step_length() {
+    let case = &cases()["fig12"];
+    let all = |max_step: f64| {
+        let settings = Settings {
+            target: Some(case.z_end),
+            max_step: Some(max_step),
+            max_points: 100_000,
+            ..Settings::default()
+        };
+        let traced = traced(case, 200, settings);
+        assert_eq!(traced.branch.stopped.reason, StopReason::Target, "max_step {max_step}");
+        let events = traced.branch.events.iter().map(|e| (e.kind.to_string(), e.p));
+        events.collect::<Vec<_>>()
+    };
+    let known = all(1e-2);
+    assert_eq!(known.iter().filter(|(kind, _)| kind == "fold").count(), 2);
+    for max_step in [1e-4, 1e-3, 1e-1, 1.0] {
+        let found = all(max_step);
+        assert_eq!(found.len(), known.len(), "max_step {max_step}: {found:?}");
+        for ((kind, z0), (known_kind, known_z0)) in found.iter().zip(&known) {
+            assert_eq!(kind, known_kind, "max_step {max_step}");
+            // extrema of the force are flat: its values agree to rounding, their places less
+            assert!((z0 - known_z0).abs() < 1e-8, "max_step {max_step}: {kind} {z0} {known_z0}");
         }
     }
 }
