@@ -105,7 +105,7 @@ pub fn newton<P: Problem>(
         let size = length(u, &mut m);
         let converged = settings.tolerance * longest.max(size);
         // corrections that no longer shrink, of a residual that is rounding
-        let stagnant = correction > 0.1 * last;
+        let stagnant = iterations > 2 && correction > 0.5 * last;
         if stagnant && residual_is_rounding(problem, u, p, &r, &mut m, jacobian.norm()) {
             return Ok(NewtonReport { iterations, correction });
         }

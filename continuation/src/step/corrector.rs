@@ -177,12 +177,13 @@ impl<'a, P: Problem> Core<'a, P> {
             }
             let mut expected = correction;
             // corrections that no longer shrink, of a residual that is rounding
-            let stagnant = rounding && iteration > 0 && correction > 0.1 * report.last;
+            let stagnant =
+                rounding && iteration > 1 && correction > 0.5 * report.last && correction <= near;
             if iteration == 0 {
                 report.first = correction;
             } else {
                 let ratio = correction / report.last;
-                if correction > converged {
+                if correction > converged && !stagnant {
                     report.contraction = report.contraction.max(ratio);
                     // later ratios of a converging iteration are smaller still
                     if ratio > 0.5 && iteration > 1 || ratio > 2.0 {
@@ -195,9 +196,10 @@ impl<'a, P: Problem> Core<'a, P> {
             report.last = correction;
             let done = match precision {
                 Precision::Step => expected <= converged && correction <= near,
-                Precision::Event => correction <= 3.0 * converged,
+                // tangents of a nearly singular state magnify what a first correction left
+                Precision::Event => correction <= 3.0 * converged && iteration > 0,
             };
-            if done || (stagnant && correction <= near) {
+            if done || stagnant {
                 self.finish(constraint, x)?;
                 return Ok(report);
             }
