@@ -4,7 +4,8 @@
 //! [`SymmetricBand`] (`L D Lᵀ`, inertia, a rank-one term), [`Band`] (LU with partial pivoting) and
 //! [`Dense`] (the same, and the full spectrum). [`Bordered`] solves `[A B; Cᵀ D] [x; y] = [f; g]`
 //! with one factorisation of the core `A`, accurately also where `A` is singular, as it is at
-//! folds and branch points. [`Lanczos`] finds a few eigenvalues of symmetric pencils from solves.
+//! folds and branch points. [`Lanczos`] and [`Arnoldi`] find a few
+//! eigenvalues of large pencils, symmetric or not, from solves.
 //!
 //! Pivots below a floor are replaced by it, and the factors then are those of a matrix within the
 //! floor of the given one; borders repair that. Solutions are refined once where their residual is
@@ -22,15 +23,19 @@
 //!   *IMA J. Numer. Anal.* 13 (1993) 161-180.
 //! - G. H. Golub and C. F. Van Loan, *Matrix Computations*, 4th ed., Johns Hopkins, 2013.
 
+mod arnoldi;
 mod band;
 mod bordered;
 mod dense;
 mod eigen;
+mod krylov;
 mod lanczos;
 mod ldlt;
+mod scalar;
 mod symmetric_band;
 mod vector;
 
+pub use arnoldi::{Arnoldi, Eigenpair, Eigenpairs};
 pub use band::Band;
 pub use bordered::{Bordered, BorderedFacts};
 pub use dense::{Dense, MAX_SPECTRUM};

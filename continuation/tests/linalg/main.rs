@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod arch;
+mod arnoldi;
 mod bordered;
 mod lanczos;
 mod matrices;
