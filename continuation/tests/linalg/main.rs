@@ -6,5 +6,6 @@ mod arnoldi;
 mod bordered;
 mod lanczos;
 mod matrices;
+mod sparse;
 mod spectra;
 mod support;
