@@ -11,11 +11,12 @@
 //!
 //! Five lowest eigenvalues of an arch of 800 unknowns, factored already, copies searched for:
 //! 620 from a random vector (25 solves), 510 from the eigenvectors at a neighbouring load (22).
+//! Six eigenvalues of a Brusselator of 800 unknowns: 2100 about zero, 5500 about 2i.
 #![allow(missing_docs, reason = "criterion's macros generate undocumented functions")]
 
 use std::hint::black_box;
 
-use continuation::linalg::{Bordered, Lanczos, Matrix, SymmetricBand};
+use continuation::linalg::{Arnoldi, Band, Bordered, Lanczos, Matrix, SymmetricBand};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 #[path = "../tests/linalg/arch.rs"]
@@ -93,5 +94,32 @@ fn lowest_eigenvalues(c: &mut Criterion) {
     run("five lowest n=800 started", &mut a, Some(&start));
 }
 
-criterion_group!(benches, symmetric_band, lowest_eigenvalues);
+/// The six eigenvalues of a Brusselator of 800 unknowns nearest to zero and to its frequency.
+fn nearest_eigenvalues(c: &mut Criterion) {
+    let (cells, b) = (400, 5.118);
+    let h = 1.0 / (f64::from(cells) + 1.0);
+    let mut a = Band::new(2 * cells as usize, 2, 2);
+    for i in 0..2 * cells as usize {
+        let diffusion = if i % 2 == 0 { 0.008 } else { 0.004 } / (h * h);
+        let reaction = [[b - 1.0, 4.0], [-b, -4.0]][i % 2];
+        a.add(i, i, reaction[i % 2] - 2.0 * diffusion);
+        a.add(i, i ^ 1, reaction[1 - i % 2]);
+        if i > 1 {
+            a.add(i, i - 2, diffusion);
+            a.add(i - 2, i, diffusion);
+        }
+    }
+    let solver = Arnoldi::new(a.dim(), 6);
+    let mut factored = a.clone();
+    factored.factor(f64::EPSILON * a.norm());
+    let identity = |x: &[f64], y: &mut [f64]| y.copy_from_slice(x);
+    c.bench_function("six nearest to zero n=800", |t| {
+        t.iter(|| solver.nearest(0.0, identity, |x| factored.solve(x), None));
+    });
+    c.bench_function("six nearest to 2i n=800", |t| {
+        t.iter(|| solver.nearest_to_imaginary(&a, None, 2.0));
+    });
+}
+
+criterion_group!(benches, symmetric_band, lowest_eigenvalues, nearest_eigenvalues);
 criterion_main!(benches);

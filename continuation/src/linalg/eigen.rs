@@ -5,7 +5,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
 use faer::{Mat, MatRef, Par};
 
-/// Settings of [`Lanczos`](super::Lanczos).
+/// Settings of [`Lanczos`](super::Lanczos) and [`Arnoldi`](super::Arnoldi).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EigenSettings {
     /// Residual of an eigenvector of `(A − σM)⁻¹M`, relative to its eigenvalue `1/(λ − σ)`, at

@@ -14,6 +14,9 @@ const PATIENCE: usize = 20;
 const ATTEMPTS: usize = 3;
 /// Relative residual at which a vector that is not wanted stays in the basis for a search.
 const NEARLY: f64 = 1e-3;
+/// Excess of the tolerance that is allowed to vectors once they have met it: bounds add up when
+/// copies mix with them.
+const SLACK: f64 = 4.0;
 /// Passes of Gram-Schmidt after which a vector counts as dependent.
 const PASSES: usize = 5;
 /// Basis vectors beyond the wanted ones.
@@ -297,7 +300,11 @@ impl Lanczos {
             if self.m < check && continued && !full && !stop {
                 continue;
             }
-            let Some(look) = self.look(wanted, count) else { return false };
+            let slack = if probe.is_some() { SLACK } else { 1.0 };
+            let Some(look) = self.look(wanted, count, slack) else { return false };
+            if self.m == self.n {
+                return self.all_seen(wanted);
+            }
             check = self.m + if probe.is_some() { 2 } else { steps(look.worst) };
             let enough = look.available == count;
             let converged = look.converged == look.available;
@@ -427,7 +434,7 @@ impl Lanczos {
     }
 
     /// Solves the projected problem and ranks its eigenvalues; `None` if it is not finite.
-    fn look(&mut self, wanted: Wanted, count: usize) -> Option<Look> {
+    fn look(&mut self, wanted: Wanted, count: usize, slack: f64) -> Option<Look> {
         if !self.small.decompose(&self.t, self.capacity, 0, self.m) {
             return None;
         }
@@ -435,7 +442,8 @@ impl Lanczos {
         let (mut converged, mut worst) = (0, 0.0);
         for r in 0..available {
             let i = self.ranking[r];
-            let excess = self.residual(i) / (self.settings.tolerance * self.small.value(i).abs());
+            let tolerance = slack * self.settings.tolerance * self.small.value(i).abs();
+            let excess = self.residual(i) / tolerance;
             converged += usize::from(excess <= 1.0);
             worst = f64::max(worst, excess);
         }
@@ -608,8 +616,8 @@ impl Lanczos {
             let distance = theta / (theta * theta + residual);
             self.values.push(shift + distance);
             self.errors.push(distance.abs() * relative.min(self.sharpened(r, ritz, relative)));
-            let measured = relative <= self.settings.tolerance;
-            self.converged.push(measured || estimate <= self.settings.tolerance * ritz.abs());
+            let tolerance = SLACK * self.settings.tolerance;
+            self.converged.push(relative.min(estimate / ritz.abs()) <= tolerance);
             self.order.push(r);
         }
     }

@@ -1,15 +1,16 @@
 //! Structured linear algebra for continuation; knows no problem.
 //!
 //! A [`Matrix`] keeps its entries and its factors in storage allocated once:
-//! [`SymmetricBand`] (`L D Lᵀ`, inertia, a rank-one term), [`Band`] (LU with partial pivoting) and
-//! [`Dense`] (the same, and the full spectrum). [`Bordered`] solves `[A B; Cᵀ D] [x; y] = [f; g]`
+//! [`SymmetricBand`] (`L D Lᵀ`, inertia, a rank-one term), [`Band`] (LU with partial pivoting),
+//! [`Dense`] (the same, and the full spectrum) and [`Sparse`] (the same in a fill-reducing order). [`Bordered`] solves `[A B; Cᵀ D] [x; y] = [f; g]`
 //! with one factorisation of the core `A`, accurately also where `A` is singular, as it is at
-//! folds and branch points. [`Lanczos`] finds a few eigenvalues of symmetric pencils from solves.
+//! folds and branch points. [`Lanczos`] and [`Arnoldi`] find a few
+//! eigenvalues of large pencils, symmetric or not, from solves.
 //!
 //! Pivots below a floor are replaced by it, and the factors then are those of a matrix within the
 //! floor of the given one; borders repair that. Solutions are refined once where their residual is
-//! above rounding. Nothing is allocated after construction, but the spectra and the LU to which a
-//! symmetric band resorts when both its eliminations are unstable.
+//! above rounding. Nothing is allocated after construction, but the spectra, the LU to which a
+//! symmetric band resorts when both its eliminations are unstable, and the first sparse factors.
 //!
 //! # Limits
 //! Normwise accuracy: a matrix whose rows and columns differ by many orders of magnitude in ways
@@ -22,22 +23,29 @@
 //!   *IMA J. Numer. Anal.* 13 (1993) 161-180.
 //! - G. H. Golub and C. F. Van Loan, *Matrix Computations*, 4th ed., Johns Hopkins, 2013.
 
+mod arnoldi;
 mod band;
 mod bordered;
 mod dense;
 mod eigen;
+mod krylov;
 mod lanczos;
 mod ldlt;
+mod scalar;
+mod sparse;
+mod sparse_lu;
 mod symmetric_band;
 mod vector;
 
 pub(crate) use vector::max_abs;
 
+pub use arnoldi::{Arnoldi, Eigenpair, Eigenpairs};
 pub use band::Band;
 pub use bordered::{Bordered, BorderedFacts};
 pub use dense::{Dense, MAX_SPECTRUM};
 pub use eigen::{EigenReport, EigenSettings};
 pub use lanczos::Lanczos;
+pub use sparse::{OutsidePattern, Sparse};
 pub use symmetric_band::{MAX_GROWTH, SymmetricBand};
 
 /// What a factorisation learned about its matrix.

@@ -2,8 +2,10 @@
 #![allow(clippy::unwrap_used)]
 
 mod arch;
+mod arnoldi;
 mod bordered;
 mod lanczos;
 mod matrices;
+mod sparse;
 mod spectra;
 mod support;
