@@ -1,14 +1,15 @@
 //! A small problem from its residual alone.
 
-use crate::linalg::{Dense, Matrix};
+use crate::linalg::{Dense, Matrix, max_abs};
 use crate::problem::{EvalError, ParamId, Parameter, Problem, Stability};
 use std::cell::RefCell;
 
 /// `f(u, p) = 0` with a dense Jacobian taken by differences: for up to some tens of unknowns.
 ///
-/// The differences are central over four points, `f' ≈ (8(f₁ − f₋₁) − (f₂ − f₋₂))/(12 h)` with
-/// `h` about 1e-3 of the unknown's magnitude: near 1e-12 for smooth `f` of order one. Where `f`
-/// varies on much smaller lengths, implement [`Problem`] with derivatives of your own.
+/// The differences are central over six points, with a step that is found for each unknown and
+/// parameter by comparing steps over many decades, so that neither the unit of `u` nor that of `p`
+/// matters: near 1e-13 for smooth `f`. Where `f` varies on much smaller lengths in some places than
+/// in others, implement [`Problem`] with derivatives of your own.
 ///
 /// ```
 /// use continuation::{DenseProblem, EventKind, Settings, Tracer};
@@ -32,19 +33,35 @@ pub struct DenseProblem<F> {
     parameters: Vec<Parameter>,
     stability: Stability,
     f: F,
+    names: Vec<&'static str>,
+    observables: Vec<Box<Observable>>,
     scratch: RefCell<Scratch>,
 }
+
+/// A scalar function of unknowns and parameters.
+type Observable = dyn Fn(&[f64], &[f64]) -> f64;
 
 struct Scratch {
     u: Vec<f64>,
     p: Vec<f64>,
-    values: [Vec<f64>; 4],
+    values: [Vec<f64>; 6],
+    /// Length over which `f` varies along each unknown and parameter; 0 until it is known.
+    lengths: Vec<f64>,
+    /// Largest derivative along each so far.
+    sizes: Vec<f64>,
+    best: Vec<f64>,
 }
 
-/// Where the four-point difference evaluates, in steps.
-const PLACES: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
-/// Step relative to the magnitude.
-const STEP: f64 = 1e-3;
+/// Where the six-point difference evaluates, in steps.
+const PLACES: [f64; 6] = [1.0, -1.0, 2.0, -2.0, 3.0, -3.0];
+/// Step relative to the length over which `f` varies.
+const STEP: f64 = 4e-3;
+/// Shortest step relative to the variable itself.
+const SHORTEST: f64 = 1e-8;
+/// Disagreement of the orders four and six above which the length is sought anew.
+const DISAGREEMENT: f64 = 1e-7;
+/// Disagreement that is good enough to stop looking for a better length.
+const AGREEMENT: f64 = 1e-9;
 
 impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
     /// `n` unknowns, named parameters, and `f(u, p, r)` that writes the residual to `r`; read as
@@ -56,15 +73,39 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
             u: vec![0.0; n],
             p: vec![0.0; parameters.len()],
             values: std::array::from_fn(|_| vec![0.0; n]),
+            lengths: vec![0.0; n + parameters.len()],
+            sizes: vec![0.0; n + parameters.len()],
+            best: vec![0.0; n],
         };
         let scratch = RefCell::new(scratch);
-        DenseProblem { n, parameters, stability: Stability::Dynamics, f, scratch }
+        DenseProblem {
+            n,
+            parameters,
+            stability: Stability::Dynamics,
+            f,
+            names: Vec::new(),
+            observables: Vec::new(),
+            scratch,
+        }
     }
 
     /// What the Jacobian's eigenvalues mean, if not [`Stability::Dynamics`].
     #[must_use]
     pub fn with_stability(mut self, stability: Stability) -> Self {
         self.stability = stability;
+        self
+    }
+
+    /// Adds a scalar function of unknowns and parameters, to be reported at every point and to
+    /// be watched ([`crate::Watch`]).
+    #[must_use]
+    pub fn observing(
+        mut self,
+        name: &'static str,
+        value: impl Fn(&[f64], &[f64]) -> f64 + 'static,
+    ) -> Self {
+        self.names.push(name);
+        self.observables.push(Box::new(value));
         self
     }
 
@@ -80,13 +121,46 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
     /// `∂f` along unknown `i`, or along parameter `i − n`, to `out`.
     fn difference(&self, i: usize, out: &mut [f64]) {
         let mut scratch = self.scratch.borrow_mut();
-        let Scratch { u, p, values } = &mut *scratch;
-        let size = match i.checked_sub(self.n) {
-            None => u[i].abs().max(u.iter().fold(0.0, |m, x| m.max(x.abs()))),
-            Some(k) => p[k].abs().max(self.parameters[k].scale.abs()),
+        let scratch = &mut *scratch;
+        let known = scratch.lengths[i];
+        if known > 0.0 && self.differ(scratch, i, known, out) <= DISAGREEMENT {
+            scratch.sizes[i] = scratch.sizes[i].max(max_abs(out));
+            return;
+        }
+        let here = match i.checked_sub(self.n) {
+            None => max_abs(&scratch.u),
+            Some(k) => scratch.p[k].abs().max(self.parameters[k].scale.abs()),
         };
+        let here = here.max(known);
+        let centre = if here > 0.0 { here } else { 1.0 };
+        // lengths ever farther from the magnitude at hand; the one whose orders agree best wins
+        let mut least = f64::INFINITY;
+        for k in 0..25 {
+            let decades = if k % 2 == 0 { -k / 2 } else { k / 2 + 1 };
+            let length = centre * 10f64.powi(decades);
+            let error = self.differ(scratch, i, length, out);
+            if error < least {
+                least = error;
+                scratch.lengths[i] = length;
+                scratch.best.copy_from_slice(out);
+            }
+            if least < AGREEMENT {
+                break;
+            }
+        }
+        if least.is_finite() {
+            out.copy_from_slice(&scratch.best);
+            scratch.sizes[i] = scratch.sizes[i].max(max_abs(out));
+        }
+    }
+
+    /// The difference with a step for a given length, and by how much two orders disagree,
+    /// relative to the derivative.
+    fn differ(&self, scratch: &mut Scratch, i: usize, length: f64, out: &mut [f64]) -> f64 {
+        let Scratch { u, p, values, sizes, .. } = scratch;
         // a power of two: the shifted values differ by exactly the step
-        let h = (STEP * if size > 0.0 { size } else { 1.0 }).log2().round().exp2();
+        let here = if i < self.n { u[i] } else { p[i - self.n] };
+        let h = (STEP * length).max(SHORTEST * here.abs()).log2().round().exp2();
         for (place, value) in PLACES.into_iter().zip(values.iter_mut()) {
             let slot = if i < self.n { &mut u[i] } else { &mut p[i - self.n] };
             let kept = *slot;
@@ -98,11 +172,26 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
                 p[i - self.n] = kept;
             }
         }
+        let (mut size, mut apart) = (0.0_f64, 0.0_f64);
         for (k, o) in out.iter_mut().enumerate() {
-            let near = values[0][k] - values[1][k];
-            let far = values[2][k] - values[3][k];
-            *o = (8.0 * near - far) / (12.0 * h);
+            let d = |m: usize| values[m][k] - values[m + 1][k];
+            let fourth = (8.0 * d(0) - d(2)) / (12.0 * h);
+            let sixth = (45.0 * d(0) - 9.0 * d(2) + d(4)) / (60.0 * h);
+            *o = sixth;
+            size = size.max(sixth.abs());
+            let difference = (sixth - fourth).abs();
+            apart = if difference.is_nan() { f64::INFINITY } else { apart.max(difference) };
         }
+        let terms = values.iter().map(|v| max_abs(v)).fold(0.0, f64::max);
+        if !apart.is_finite() {
+            return f64::INFINITY;
+        }
+        if apart > 0.0 && apart <= 64.0 * f64::EPSILON * terms / h {
+            return 0.5 * AGREEMENT; // rounding: nothing is wrong with the length
+        }
+        // a derivative that vanishes exactly says nothing for or against the length, and one that
+        // is about to vanish little
+        if size > 0.0 { apart / size.max(1e-2 * sizes[i]) } else { 1.0 }
     }
 
     fn place(&self, u: &[f64], p: &[f64]) {
@@ -156,5 +245,16 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> Problem for DenseProblem<F> {
 
     fn stability(&self) -> Stability {
         self.stability
+    }
+
+    fn observables(&self) -> &[&'static str] {
+        &self.names
+    }
+
+    fn observe(&self, u: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
+        for (out, observable) in out.iter_mut().zip(&self.observables) {
+            *out = observable(u, p);
+        }
+        Ok(())
     }
 }

@@ -6,12 +6,17 @@
 
 pub mod branch;
 mod dense_problem;
+mod derivative_check;
+#[cfg(feature = "dual")]
+mod dual_problem;
 mod events;
 pub mod linalg;
+mod modes;
 pub mod newton;
 pub mod problem;
 pub mod samples;
 mod settings;
+mod singular;
 mod step;
 pub mod tracer;
 
@@ -20,8 +25,12 @@ pub use branch::{
     Shape, Statistics, Stop, StopReason,
 };
 pub use dense_problem::DenseProblem;
+pub use derivative_check::{DerivativeCheck, check_derivatives};
+#[cfg(feature = "dual")]
+pub use dual_problem::{DualProblem, Number, Residual};
 pub use events::Watch;
 pub use linalg::{Facts, Matrix};
+pub use modes::{Modes, modes};
 pub use newton::{NewtonError, NewtonReport, NewtonSettings, newton};
 pub use problem::{EvalError, ParamId, Parameter, Problem, Stability};
 pub use settings::{Settings, SettingsError};

@@ -5,8 +5,8 @@
 //! computed with the old factors, is shorter. The test is invariant under any linear
 //! transformation of `f`. Full steps near a solution converge quadratically.
 
-use crate::linalg::Matrix;
-use crate::problem::{EvalError, Problem};
+use crate::linalg::{Matrix, max_abs};
+use crate::problem::{EvalError, ParamId, Problem};
 
 /// Why Newton's method gave no solution.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -45,8 +45,8 @@ pub enum NewtonError {
 /// Limits of [`newton`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NewtonSettings {
-    /// Corrections shorter than this, relative to `1 + |u|` in the problem's metric, have
-    /// converged.
+    /// Corrections shorter than this, relative to the solution or to the longest correction on the
+    /// way, in the problem's metric, have converged.
     pub tolerance: f64,
     /// Most iterations.
     pub max_iterations: usize,
@@ -86,6 +86,7 @@ pub fn newton<P: Problem>(
         x.iter().zip(m.iter()).map(|(a, b)| a * b).sum::<f64>().max(0.0).sqrt()
     };
     let mut damping = 1.0_f64;
+    let (mut last, mut longest) = (f64::INFINITY, 0.0_f64);
     for iterations in 1..=settings.max_iterations {
         problem.linearise(u, p, &mut r, &mut jacobian).map_err(NewtonError::Start)?;
         crate::problem::check_finite(&r).map_err(NewtonError::Start)?;
@@ -100,7 +101,14 @@ pub fn newton<P: Problem>(
         if !correction.is_finite() {
             return Err(NewtonError::Singular { iterations });
         }
-        let converged = settings.tolerance * (1.0 + length(u, &mut m));
+        longest = longest.max(correction);
+        let converged = settings.tolerance * longest.max(length(u, &mut m));
+        // corrections that no longer shrink, of a residual that is rounding
+        let stagnant = correction > 0.1 * last;
+        if stagnant && residual_is_rounding(problem, u, p, &r, &mut m, jacobian.norm()) {
+            return Ok(NewtonReport { iterations, correction });
+        }
+        last = correction;
         damping = (2.0 * damping).min(1.0);
         let mut cause = None;
         loop {
@@ -133,4 +141,22 @@ pub fn newton<P: Problem>(
         }
     }
     Err(NewtonError::TooMany { iterations: settings.max_iterations, correction: f64::NAN })
+}
+
+/// Whether a residual is no more than the rounding errors of its terms.
+fn residual_is_rounding<P: Problem>(
+    problem: &P,
+    u: &[f64],
+    p: &[f64],
+    r: &[f64],
+    scratch: &mut [f64],
+    jacobian: f64,
+) -> bool {
+    let mut terms = jacobian * max_abs(u);
+    for (which, p_k) in p.iter().enumerate() {
+        if problem.parameter_derivative(u, p, ParamId(which), scratch).is_ok() {
+            terms += max_abs(scratch) * p_k.abs();
+        }
+    }
+    max_abs(r) <= 4.0 * f64::EPSILON * terms
 }

@@ -62,6 +62,24 @@ pub struct Event {
     pub detail: Detail,
 }
 
+impl Event {
+    /// The branches that meet at a branch point.
+    pub fn crossing(&self) -> Option<&Crossing> {
+        match &self.detail {
+            Detail::Crossing(crossing) => Some(crossing),
+            _ => None,
+        }
+    }
+
+    /// The normal form of a Hopf point.
+    pub fn hopf(&self) -> Option<&HopfForm> {
+        match &self.detail {
+            Detail::Hopf(hopf) => Some(hopf),
+            _ => None,
+        }
+    }
+}
+
 /// What the normal form says of a special point.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -126,6 +144,8 @@ pub struct Crossing {
     /// `d²p/dx²` along the vertical branch of a pitchfork, `x` its arclength in the problem's
     /// metric; 0 otherwise.
     pub curvature: f64,
+    /// Tangent of the branch that was traced.
+    pub traced: Direction,
     /// Tangents of the branches that leave, other than the one that was traced; each can be
     /// followed both ways.
     pub leaving: Vec<Direction>,
@@ -138,8 +158,7 @@ pub struct Direction {
     pub du: Vec<f64>,
     /// The parameter's part.
     pub dp: f64,
-    /// Half the curvature of the parameter along it where `dp` is 0: `p - p₀ ≈ bend x²`, `x` the
-    /// multiple of the direction.
+    /// Where `dp` is 0: `p - p₀ ≈ bend x²`, `x` the multiple of the direction.
     pub bend: f64,
     /// Multiple of the direction at which the nonlinearity matters over the parameter's range.
     pub amplitude: f64,

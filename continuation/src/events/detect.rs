@@ -9,8 +9,9 @@ use crate::step::{Refusal, State};
 pub(crate) enum Candidate {
     /// dp/ds changes sign.
     Fold,
-    /// The orientation, or the number of unstable modes without a fold, changes.
-    BranchPoint,
+    /// The orientation, or the number of unstable modes without a fold, changes; so many modes
+    /// become critical.
+    BranchPoint { kernel: usize },
     /// The real part of a complex pair of eigenvalues changes sign.
     Hopf,
     /// Observable `observable` crosses `level`.
@@ -38,7 +39,7 @@ impl Candidate {
         match *self {
             Candidate::Fold => x.tp,
             Candidate::Hopf => x.pair,
-            Candidate::BranchPoint => f64::from(x.orientation * orientation),
+            Candidate::BranchPoint { .. } => f64::from(x.orientation * orientation),
             Candidate::Value { observable, level, .. } => x.values[observable] - level,
             Candidate::Extremum { observable } => x.slopes[observable],
             Candidate::Parameter { value, .. } => x.p - value,
@@ -74,6 +75,8 @@ fn crosses(a: f64, b: f64) -> bool {
     a * b < 0.0 || (b == 0.0 && a != 0.0)
 }
 
+/// A parameter's part of the tangent, relative to its range, below which the branch is vertical.
+const VERTICAL: f64 = 1e-9;
 /// Mismatch of a Hermite cubic above which the function is not resolved.
 const MAX_MISMATCH: f64 = 0.35;
 /// Changes smaller than this fraction of an observable's magnitude are not looked into.
@@ -138,41 +141,34 @@ impl Detector {
         }
     }
 
-    /// The special points between `a` and `b`, a scaled length `h` apart. `final_say` takes the
-    /// step as it is, where it is too short to be divided further.
+    /// The special points between `a` and `b`, a scaled length `h` apart; `range` is the scale of
+    /// the parameter. `final_say` takes the step as it is, where it is too short to be divided
+    /// further.
     pub(crate) fn detect(
         &mut self,
         a: &State,
         b: &State,
         h: f64,
+        range: f64,
         final_say: bool,
     ) -> Result<(), Refusal> {
         self.found.clear();
         let p = Cubic { h, g: [a.p, b.p], s: [a.tp, b.tp] };
-        let fold = crosses(a.tp, b.tp);
-        if !final_say && self.parameter_unresolved(&p) {
+        // where the parameter stands still to rounding, its turns are noise
+        let vertical = a.tp.abs().max(b.tp.abs()) < VERTICAL * range;
+        let into_noise = b.tp.abs() < NOISE * range;
+        if into_noise && !vertical && !final_say {
+            return Err(Refusal::Unresolved);
+        }
+        let fold = crosses(a.tp, b.tp) && !vertical && !into_noise;
+        if !final_say && !vertical && self.parameter_unresolved(&p) {
             return Err(Refusal::Unresolved);
         }
         if fold {
             self.found.push(Candidate::Fold);
         }
-        if a.orientation * b.orientation < 0 {
-            self.found.push(Candidate::BranchPoint);
-        } else if let (Some(before), Some(after)) = (a.unstable, b.unstable) {
-            let change = before.abs_diff(after);
-            // a pair that meets on the real axis on the way may have crossed the imaginary one
-            // first, hidden by a fold
-            if change > 0 && a.pairs != b.pairs && !final_say {
-                return Err(Refusal::Stability);
-            }
-            if change == 2 && !fold && crosses(a.pair, b.pair) {
-                self.found.push(Candidate::Hopf);
-            } else if change > usize::from(fold) {
-                if !final_say {
-                    return Err(Refusal::Stability);
-                }
-                self.found.push(Candidate::BranchPoint);
-            }
+        if !vertical {
+            self.detect_crossings(a, b, fold, final_say)?;
         }
         for k in 0..self.watched.len() {
             let candidate = self.watched[k];
@@ -202,14 +198,66 @@ impl Detector {
                             crosses(a.p - value, p.value(x) - value)
                         }))
                 }
-                Candidate::Fold | Candidate::BranchPoint | Candidate::Hopf => false,
+                Candidate::Fold | Candidate::BranchPoint { .. } | Candidate::Hopf => false,
             };
             if hit {
                 self.found.push(candidate);
             }
         }
-        if !final_say && self.found.iter().filter(|c| c.is_singular()).count() > 1 {
+        let singular = self.found.iter().filter(|c| c.is_singular()).count();
+        // a pitchfork met from its side is both a fold and a branch point
+        let pitchfork = singular == 2
+            && matches!(
+                self.found[..],
+                [Candidate::Fold, Candidate::BranchPoint { kernel: 1 }, ..]
+            );
+        if !final_say && singular > 1 && !pitchfork {
             return Err(Refusal::SeveralEvents);
+        }
+        Ok(())
+    }
+
+    /// Branch points and Hopf points, by what changes between the ends.
+    fn detect_crossings(
+        &mut self,
+        a: &State,
+        b: &State,
+        fold: bool,
+        final_say: bool,
+    ) -> Result<(), Refusal> {
+        let flip = a.orientation * b.orientation < 0;
+        let change = match (a.count, b.count) {
+            (Some(before), Some(after)) => before.abs_diff(after),
+            _ => usize::from(fold != flip),
+        };
+        // a pair that meets on the real axis on the way may have crossed the imaginary one
+        // first, hidden by a fold
+        if change > 0 && a.pairs != b.pairs && !final_say {
+            return Err(Refusal::Stability);
+        }
+        // a few eigenvalues found by iteration tell pairs that cross, no more
+        let hopf = change == 2 && !fold && !flip && crosses(a.pair, b.pair);
+        if hopf {
+            self.found.push(Candidate::Hopf);
+            return Ok(());
+        }
+        let certain = a.certified && b.certified;
+        let kernel = match (flip, fold) {
+            (true, true) if certain && change > 0 && !final_say => return Err(Refusal::Stability),
+            (true, true) => 1,
+            (true, false) if certain => change.max(1),
+            (true, false) => 1,
+            (false, true) if certain && change != 1 && !final_say => {
+                return Err(Refusal::Stability);
+            }
+            (false, false) if certain && change == 1 && !final_say => {
+                return Err(Refusal::Stability);
+            }
+            (false, false) if certain => change,
+            _ => 0,
+        };
+        if kernel > 0 {
+            self.found.push(Candidate::BranchPoint { kernel });
         }
         Ok(())
     }

@@ -33,10 +33,10 @@ pub(crate) fn locate<P: Problem>(
     tolerance: f64,
     x: &mut State,
 ) -> Result<Located, Refusal> {
-    let bend = core.weights.dot(&a.mtu, a.tp, &b.tu, b.tp);
+    let bend = bend(core, a, b);
     let tolerance = match candidate {
         // the corrector itself is singular there
-        Candidate::BranchPoint => tolerance.max(1e-7 * h),
+        Candidate::BranchPoint { .. } => tolerance.max(1e-7 * h),
         _ => tolerance,
     };
     let (ta, tb) = (candidate.test(a, a.orientation), candidate.test(b, a.orientation));
@@ -64,7 +64,7 @@ pub(crate) fn locate<P: Problem>(
         match core.correct(Constraint::Plane(a, at), x, Precision::Event) {
             Ok(done) => correction = done.last,
             // as close to the singular point as the corrector gets
-            Err(_) if *candidate == Candidate::BranchPoint => break,
+            Err(_) if matches!(candidate, Candidate::BranchPoint { .. }) => break,
             Err(refusal) => return Err(refusal),
         }
         let value = candidate.test(x, a.orientation);
@@ -114,8 +114,14 @@ fn parameter_guess(a: &State, b: &State, h: f64, bend: f64, value: f64) -> Optio
     None
 }
 
-/// Hermite interpolation of the solution at a scaled distance `at` from `a`.
-fn interpolate(a: &State, b: &State, h: f64, bend: f64, at: f64, x: &mut State) {
+/// By how much the branch's own speed exceeds that of its projection at the far end: the cosine
+/// between the tangents at both.
+pub(crate) fn bend<P: Problem>(core: &Core<'_, P>, a: &State, b: &State) -> f64 {
+    core.weights.dot(&a.mtu, a.tp, &b.tu, b.tp)
+}
+
+/// Hermite interpolation of the solution at a scaled distance `at` from `a` along its tangent.
+pub(crate) fn interpolate(a: &State, b: &State, h: f64, bend: f64, at: f64, x: &mut State) {
     let [w0, w1, w2, w3] = basis(at / h);
     let (w1, w3) = (w1 * h, w3 * h / bend);
     for i in 0..x.u.len() {

@@ -7,7 +7,7 @@ mod root;
 
 pub(crate) use detect::{Candidate, Detector, Role};
 pub(crate) use hermite::basis;
-pub(crate) use locate::{Located, locate};
+pub(crate) use locate::{Located, bend, interpolate, locate};
 
 use serde::{Deserialize, Serialize};
 

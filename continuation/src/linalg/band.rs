@@ -257,4 +257,31 @@ impl Matrix for Band {
     fn solve_transpose(&mut self, x: &mut [f64]) {
         self.solve_with(x, true);
     }
+
+    fn add_identity(&mut self, a: f64) -> bool {
+        for i in 0..self.n {
+            self.add(i, i, a);
+        }
+        true
+    }
+
+    fn complex(&self, imaginary: &Self) -> Option<Self> {
+        debug_assert_eq!(
+            (self.n, self.kl, self.ku),
+            (imaginary.n, imaginary.kl, imaginary.ku),
+            "different patterns"
+        );
+        let mut out = Self::new(2 * self.n, 2 * self.kl + 1, 2 * self.ku + 1);
+        for j in 0..self.n {
+            let (first, last) = self.rows(j);
+            for i in first..last {
+                let (a, b) = (self.get(i, j), imaginary.get(i, j));
+                out.set(2 * i, 2 * j, a);
+                out.set(2 * i, 2 * j + 1, -b);
+                out.set(2 * i + 1, 2 * j, b);
+                out.set(2 * i + 1, 2 * j + 1, a);
+            }
+        }
+        Some(out)
+    }
 }

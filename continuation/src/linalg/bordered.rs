@@ -180,7 +180,13 @@ impl Bordered {
         self.solve_with(a, f, g, true);
     }
 
-    fn column(&self, k: usize) -> &[f64] {
+    /// Largest entry of the core that was factored last.
+    pub(crate) fn core_norm(&self) -> f64 {
+        self.core_norm
+    }
+
+    /// Column `k` of `B`.
+    pub(crate) fn column(&self, k: usize) -> &[f64] {
         &self.b[k * self.n..(k + 1) * self.n]
     }
 

@@ -1,9 +1,20 @@
 //! Dense matrix, LU with partial pivoting, full spectrum.
 
-use faer::{Mat, Side};
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Scale, Side};
 
 use super::vector::{add_scaled, dot, max_abs, pivot_or_floor, sign, solve_refined};
 use super::{Facts, Matrix};
+
+/// Largest dimension of which [`Dense`] computes the full spectrum (seconds above it).
+pub const MAX_SPECTRUM: usize = 600;
+
+/// An eigenvalue beyond this multiple of `|A| / |M|` is an infinite one, moved by rounding: those
+/// of a differential-algebraic system of index two appear at about `ε^(-1/2)`.
+const INFINITE: f64 = 1e7;
+
+/// Shifts of a pencil, in units of `|A| / |M|`: irregular numbers, some on either side.
+const SHIFTS: [f64; 4] = [0.739, -0.618, 0.213, -0.171];
 
 /// A dense matrix, stored by columns; meant for at most a few hundred unknowns.
 ///
@@ -70,18 +81,20 @@ impl Dense {
     ///
     /// Eigenvalues within rounding of zero, `n ε` times the largest, count as neither.
     pub fn symmetric_inertia(&self) -> Option<(usize, usize)> {
-        let tolerance = 8.0 * f64::EPSILON * self.norm();
-        for j in 0..self.n {
-            for i in 0..j {
-                if (self.get(i, j) - self.get(j, i)).abs() > tolerance {
-                    return None;
-                }
-            }
+        if !self.is_symmetric() {
+            return None;
         }
         let values = self.to_faer()?.self_adjoint_eigenvalues(Side::Lower).ok()?;
         let zero = self.n as f64 * f64::EPSILON * max_abs(&values);
         let negative = values.iter().filter(|v| **v < -zero).count();
         Some((negative, values.iter().filter(|v| **v > zero).count()))
+    }
+
+    /// Symmetric to rounding.
+    fn is_symmetric(&self) -> bool {
+        let tolerance = 8.0 * f64::EPSILON * self.norm();
+        let same = |i, j| (self.get(i, j) - self.get(j, i)).abs() <= tolerance;
+        (0..self.n).all(|j| (0..j).all(|i| same(i, j)))
     }
 
     /// A copy for faer; `None` if an entry is not finite.
@@ -235,8 +248,108 @@ impl Matrix for Dense {
         self.solve_with(x, true);
     }
 
-    fn spectrum(&self, _mass: Option<&Self>) -> Option<Vec<(f64, f64)>> {
-        let values = self.to_faer()?.eigenvalues().ok()?;
-        Some(values.iter().map(|z| (z.re, z.im)).collect())
+    fn add_identity(&mut self, a: f64) -> bool {
+        self.entries.iter_mut().step_by(self.n + 1).for_each(|entry| *entry += a);
+        true
     }
+
+    /// `None` above [`MAX_SPECTRUM`] unknowns. Symmetric matrices have exactly real eigenvalues,
+    /// with a mass matrix if that is positive definite to rounding. Allocates.
+    ///
+    /// Otherwise the pencil is shifted and inverted; eigenvalues beyond 1e7 `|A| / |M|` count as
+    /// infinite, which leaves out those of differential-algebraic systems up to index two. `None`
+    /// also where the pencil is singular for every `λ`.
+    fn spectrum(&self, mass: Option<&Self>) -> Option<Vec<(f64, f64)>> {
+        if self.n > MAX_SPECTRUM {
+            return None;
+        }
+        let a = self.to_faer()?;
+        let real = |values: Vec<f64>| values.into_iter().map(|v| (v, 0.0)).collect();
+        let Some(mass) = mass else {
+            if self.is_symmetric() {
+                return a.self_adjoint_eigenvalues(Side::Lower).ok().map(real);
+            }
+            let values = a.eigenvalues().ok()?;
+            return Some(values.iter().map(|z| (z.re, z.im)).collect());
+        };
+        let m = mass.to_faer()?;
+        if self.is_symmetric()
+            && mass.is_symmetric()
+            && let Some(reduced) = reduce(&a, &m)
+        {
+            return reduced.self_adjoint_eigenvalues(Side::Lower).ok().map(real);
+        }
+        pencil_eigenvalues(&a, &m, self.norm(), mass.norm())
+    }
+
+    fn complex(&self, imaginary: &Self) -> Option<Self> {
+        debug_assert_eq!(self.n, imaginary.n, "different dimensions");
+        let mut out = Self::new(2 * self.n);
+        for j in 0..self.n {
+            for i in 0..self.n {
+                let (a, b) = (self.get(i, j), imaginary.get(i, j));
+                out.set(2 * i, 2 * j, a);
+                out.set(2 * i, 2 * j + 1, -b);
+                out.set(2 * i + 1, 2 * j, b);
+                out.set(2 * i + 1, 2 * j + 1, a);
+            }
+        }
+        Some(out)
+    }
+}
+
+/// `L⁻¹ A L⁻ᵀ` with `M = L Lᵀ`; `None` if `M` is not positive definite by a margin.
+fn reduce(a: &Mat<f64>, m: &Mat<f64>) -> Option<Mat<f64>> {
+    let n = a.nrows();
+    let llt = m.llt(Side::Lower).ok()?;
+    let l = llt.L();
+    let pivots = (0..n).map(|i| l[(i, i)] * l[(i, i)]);
+    let (least, largest) =
+        pivots.fold((f64::INFINITY, 0.0), |(l, g): (f64, f64), d| (l.min(d), g.max(d)));
+    if least <= 1e-10 * largest {
+        return None; // singular, or nearly: the reduction would be inaccurate
+    }
+    let mut c = a.clone();
+    for _ in 0..2 {
+        l.solve_lower_triangular_in_place(&mut c);
+        c = c.transpose().to_owned();
+    }
+    Some(Mat::from_fn(n, n, |i, j| 0.5 * (c[(i, j)] + c[(j, i)])))
+}
+
+/// The finite eigenvalues of `A x = λ M x`, by those of `(A − σM)⁻¹M`.
+///
+/// Not by faer's QZ: version 0.24 returns wrong conjugates, and NaN from some size on. The error
+/// is of the same order, `ε |A| / |M|` times the condition of the eigenvalue, as long as
+/// `A − σM` is well conditioned for one of the shifts tried; all are of the size `|A| / |M|`.
+fn pencil_eigenvalues(
+    a: &Mat<f64>,
+    m: &Mat<f64>,
+    a_norm: f64,
+    m_norm: f64,
+) -> Option<Vec<(f64, f64)>> {
+    let n = a.nrows();
+    if m_norm == 0.0 {
+        return Some(Vec::new());
+    }
+    let unit = if a_norm > 0.0 { a_norm / m_norm } else { 1.0 };
+    let mut best = None;
+    let mut best_ratio = 10.0 * f64::EPSILON; // below it the pencil is singular
+    for shift in SHIFTS.map(|s| s * unit) {
+        let lu = (a - m * Scale(shift)).full_piv_lu();
+        let pivots = (0..n).map(|i| lu.U()[(i, i)].abs());
+        let (least, largest) =
+            pivots.fold((f64::INFINITY, 0.0), |(l, g): (f64, f64), d| (l.min(d), g.max(d)));
+        if least > best_ratio * largest {
+            best_ratio = least / largest;
+            best = Some((shift, lu));
+        }
+    }
+    let (shift, lu) = best?;
+    let inverses = lu.solve(m).eigenvalues().ok()?;
+    let finite = inverses.iter().filter_map(|z| {
+        let square = z.re * z.re + z.im * z.im;
+        (square.sqrt() * unit * INFINITE >= 1.0).then(|| (shift + z.re / square, -z.im / square))
+    });
+    Some(finite.collect())
 }

@@ -4,7 +4,7 @@
 //! [`SymmetricBand`] (`L D Lᵀ`, inertia, a rank-one term), [`Band`] (LU with partial pivoting) and
 //! [`Dense`] (the same, and the full spectrum). [`Bordered`] solves `[A B; Cᵀ D] [x; y] = [f; g]`
 //! with one factorisation of the core `A`, accurately also where `A` is singular, as it is at
-//! folds and branch points.
+//! folds and branch points. [`Lanczos`] finds a few eigenvalues of symmetric pencils from solves.
 //!
 //! Pivots below a floor are replaced by it, and the factors then are those of a matrix within the
 //! floor of the given one; borders repair that. Solutions are refined once where their residual is
@@ -25,13 +25,19 @@
 mod band;
 mod bordered;
 mod dense;
+mod eigen;
+mod lanczos;
 mod ldlt;
 mod symmetric_band;
 mod vector;
 
+pub(crate) use vector::max_abs;
+
 pub use band::Band;
 pub use bordered::{Bordered, BorderedFacts};
-pub use dense::Dense;
+pub use dense::{Dense, MAX_SPECTRUM};
+pub use eigen::{EigenReport, EigenSettings};
+pub use lanczos::Lanczos;
 pub use symmetric_band::{MAX_GROWTH, SymmetricBand};
 
 /// What a factorisation learned about its matrix.
@@ -71,6 +77,11 @@ pub trait Matrix: Clone + Send {
     fn solve(&mut self, x: &mut [f64]);
     /// Solves `Aᵀ x = b` in place with the latest factors.
     fn solve_transpose(&mut self, x: &mut [f64]);
+    /// `A += a I`, true; false (the default) where the type does not do that.
+    fn add_identity(&mut self, a: f64) -> bool {
+        let _ = a;
+        false
+    }
     /// All eigenvalues of `A x = λ x`, or of `A x = λ M x` with a mass matrix, as (real,
     /// imaginary) pairs, where a full spectrum is affordable (small dense matrices); `None`
     /// otherwise. Infinite eigenvalues (of a singular `M`) are left out.

@@ -361,4 +361,11 @@ impl Matrix for SymmetricBand {
     fn solve_transpose(&mut self, x: &mut [f64]) {
         self.solve(x);
     }
+
+    fn add_identity(&mut self, a: f64) -> bool {
+        for j in 0..self.n {
+            self.add(j, j, a);
+        }
+        true
+    }
 }

@@ -28,7 +28,7 @@ pub(super) fn add_scaled(y: &mut [f64], a: f64, x: &[f64]) {
 }
 
 /// Largest magnitude in `x`; 0 if empty.
-pub(super) fn max_abs(x: &[f64]) -> f64 {
+pub(crate) fn max_abs(x: &[f64]) -> f64 {
     let mut lanes = [0.0; 8];
     let (chunks, rest) = x.as_chunks::<8>();
     for chunk in chunks {

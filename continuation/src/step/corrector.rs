@@ -5,10 +5,13 @@
 //! to come, estimated from the measured quadratic convergence, so that a good step needs no
 //! assembly that only confirms.
 
+use super::stability::StabilityCount;
 use super::{Refusal, State, Weights};
 use crate::branch::Statistics;
-use crate::linalg::{Bordered, BorderedFacts, Matrix};
-use crate::problem::{EvalError, ParamId, Problem, Stability, check_finite};
+use crate::linalg::{Bordered, BorderedFacts, max_abs};
+use crate::problem::{EvalError, ParamId, Problem, check_finite};
+use crate::settings::Settings;
+use crate::singular::{Extended, Probe};
 
 /// The scalar equation that closes the system.
 #[derive(Clone, Copy)]
@@ -39,6 +42,9 @@ pub(crate) struct Corrected {
     pub(crate) last: f64,
 }
 
+/// A residual below this part of its terms is rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// The problem, its matrices and all work space of the tracer.
 pub(crate) struct Core<'a, P: Problem> {
     pub(crate) problem: &'a P,
@@ -53,6 +59,7 @@ pub(crate) struct Core<'a, P: Problem> {
     jacobian: P::Jacobian,
     bordered: Bordered,
     facts: Option<BorderedFacts>,
+    stability: StabilityCount<P>,
     r: Vec<f64>,
     du: Vec<f64>,
     mdu: Vec<f64>,
@@ -66,8 +73,7 @@ impl<'a, P: Problem> Core<'a, P> {
         which: ParamId,
         p: &[f64],
         weights: Weights,
-        tolerance: f64,
-        max_iterations: usize,
+        settings: &Settings,
     ) -> Self {
         let n = problem.dim();
         let m = problem.observables().len();
@@ -77,12 +83,13 @@ impl<'a, P: Problem> Core<'a, P> {
             weights,
             statistics: Statistics::default(),
             wanted: vec![false; m],
-            tolerance,
-            max_iterations,
+            tolerance: settings.tolerance,
+            max_iterations: settings.max_iterations,
             p: p.to_vec(),
             jacobian: problem.new_jacobian(),
             bordered: Bordered::new(n, 1),
             facts: None,
+            stability: StabilityCount::new(problem, settings.eigenvalues),
             r: vec![0.0; n],
             du: vec![0.0; n],
             mdu: vec![0.0; n],
@@ -143,6 +150,7 @@ impl<'a, P: Problem> Core<'a, P> {
             self.border(constraint);
             let facts = self.bordered.factor(&mut self.jacobian);
             self.facts = Some(facts);
+            let rounding = self.residual_is_rounding(x);
             let mut g = [match constraint {
                 Constraint::Plane(base, distance) => {
                     let du = x.u.iter().zip(&base.u).zip(&base.mtu);
@@ -168,6 +176,8 @@ impl<'a, P: Problem> Core<'a, P> {
                 x.p = value;
             }
             let mut expected = correction;
+            // corrections that no longer shrink, of a residual that is rounding
+            let stagnant = rounding && iteration > 0 && correction > 0.1 * report.last;
             if iteration == 0 {
                 report.first = correction;
             } else {
@@ -187,12 +197,20 @@ impl<'a, P: Problem> Core<'a, P> {
                 Precision::Step => expected <= converged && correction <= near,
                 Precision::Event => correction <= 3.0 * converged,
             };
-            if done {
+            if done || (stagnant && correction <= near) {
                 self.finish(constraint, x)?;
                 return Ok(report);
             }
         }
         Err(Refusal::Contraction { contraction: report.contraction })
+    }
+
+    /// Whether the assembled residual is no more than the rounding errors of its terms. Where the
+    /// unknowns vanish, nothing else says how small a correction can become.
+    fn residual_is_rounding(&self, x: &State) -> bool {
+        let terms = self.bordered.core_norm() * max_abs(&x.u)
+            + max_abs(self.bordered.column(0)) * x.p.abs();
+        max_abs(&self.r) <= ROUNDING * terms
     }
 
     /// Tangent, orientation, stability and observables from the latest factors.
@@ -211,9 +229,13 @@ impl<'a, P: Problem> Core<'a, P> {
     /// Everything at `x` that follows from its tangent, which need not be normalised yet.
     fn complete(&mut self, x: &mut State) -> Result<(), Refusal> {
         self.normalise(x)?;
+        if self.stability.wants_eigenvalues() {
+            self.assemble(&x.u, x.p).map_err(Refusal::Evaluation)?;
+            self.facts = Some(self.bordered.factor(&mut self.jacobian));
+        }
         let Some(facts) = self.facts else { return Err(Refusal::Singular) };
         x.orientation = facts.det_sign.unwrap_or(0);
-        self.count_unstable(&facts, x);
+        self.stability.judge(self.problem, &mut self.jacobian, facts.core.inertia, x);
         self.observe(x).map_err(Refusal::Evaluation)
     }
 
@@ -227,33 +249,6 @@ impl<'a, P: Problem> Core<'a, P> {
         x.slopes.fill(0.0);
         x.scale_tangent(1.0 / norm);
         Ok(())
-    }
-
-    /// Counts unstable modes: from the inertia where the factors know it, else from the full
-    /// spectrum of a dense Jacobian.
-    fn count_unstable(&self, facts: &BorderedFacts, x: &mut State) {
-        (x.unstable, x.pair, x.pairs) = (None, f64::NAN, 0);
-        let stability = self.problem.stability();
-        let multipliers = self.problem.multipliers();
-        match (stability, facts.core.inertia) {
-            (Stability::None, _) => {}
-            (Stability::EnergyHessian, Some((negative, _))) => {
-                x.unstable = Some(negative.saturating_sub(multipliers));
-            }
-            (Stability::Dynamics, Some((_, positive))) => x.unstable = Some(positive),
-            (_, None) => {
-                let Some(spectrum) = self.jacobian.spectrum(None) else { return };
-                let count = |sign: f64| spectrum.iter().filter(|(re, _)| sign * re > 0.0).count();
-                if stability == Stability::EnergyHessian {
-                    x.unstable = Some(count(-1.0).saturating_sub(multipliers));
-                } else {
-                    x.unstable = Some(count(1.0));
-                    let pairs = spectrum.iter().filter(|(_, im)| *im > 0.0).map(|(re, _)| *re);
-                    x.pairs = pairs.clone().count();
-                    x.pair = pairs.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(f64::NAN);
-                }
-            }
-        }
     }
 
     /// Observables and their slopes along the tangent.
@@ -335,6 +330,35 @@ impl<'a, P: Problem> Core<'a, P> {
             self.wanted[k] = true;
         }
         self.observe(x)
+    }
+
+    /// For the analysis of a special point near by.
+    pub(crate) fn probe(&self) -> Probe<'a, P> {
+        Probe::new(self.problem, self.which, &self.p, self.weights)
+    }
+
+    /// Makes `x` the state at `z` with this tangent; its stability is not judged.
+    pub(crate) fn place(
+        &mut self,
+        x: &mut State,
+        z: &Extended,
+        tangent: &Extended,
+    ) -> Result<(), EvalError> {
+        x.u.copy_from_slice(&z.u);
+        x.tu.copy_from_slice(&tangent.u);
+        (x.p, x.tp) = (z.p, tangent.p);
+        if self.normalise(x).is_err() {
+            return Err(EvalError::NotFinite { at: 0 });
+        }
+        self.observe(x)
+    }
+
+    /// The left null vector `ψ` of the Jacobian at a fold, with `ψᵀ F_p = 1`, from the latest
+    /// factors.
+    pub(crate) fn left_at_fold(&mut self) -> Vec<f64> {
+        let mut w = vec![0.0; self.du.len()];
+        self.bordered.solve_transpose(&mut self.jacobian, &mut w, &mut [1.0]);
+        w
     }
 
     /// Distance between two states in the scaled metric and the cosines of the angles between

@@ -35,7 +35,6 @@ impl Quality {
 /// the cosines between secant and tangents.
 pub(crate) fn judge(
     settings: &Settings,
-    from: &State,
     to: &State,
     h: f64,
     corrected: &Corrected,
@@ -57,8 +56,8 @@ pub(crate) fn judge(
     if worst > limit {
         return Err(Refusal::Turn { angle: worst });
     }
-    if from.orientation * to.orientation <= 0 {
-        return Err(Refusal::Orientation);
+    if to.orientation == 0 {
+        return Err(Refusal::Singular);
     }
     Ok(quality)
 }

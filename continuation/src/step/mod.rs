@@ -3,11 +3,12 @@
 mod corrector;
 mod judge;
 mod size;
+mod stability;
 mod state;
 mod weights;
 
 pub(crate) use corrector::{Constraint, Core, Precision};
-pub(crate) use judge::{Quality, judge};
+pub(crate) use judge::judge;
 pub(crate) use size::StepSize;
 pub(crate) use state::State;
 pub(crate) use weights::{Weights, dot};
@@ -45,6 +46,9 @@ pub enum Refusal {
     /// The orientation of the branch changed: a branch point, a jump or a reversal.
     #[error("the orientation of the branch changes within the step")]
     Orientation,
+    /// The step away from a branch point fell back onto the branch that led to it.
+    #[error("the step falls back onto the branch that led to the branch point")]
+    OldBranch,
     /// The number of unstable modes changed without a special point that explains it.
     #[error("the number of unstable modes changes without a fold")]
     Stability,

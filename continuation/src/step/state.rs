@@ -19,9 +19,17 @@ pub(crate) struct State {
     pub(crate) orientation: i8,
     /// Number of unstable modes.
     pub(crate) unstable: Option<usize>,
+    /// Number of eigenvalues on the unstable side, also where the problem does not call them so.
+    pub(crate) count: Option<usize>,
+    /// Whether that number is certain.
+    pub(crate) certified: bool,
+    /// The eigenvalues asked for.
+    pub(crate) eigenvalues: Vec<(f64, f64)>,
     /// Real part of the complex pair of eigenvalues nearest to the imaginary axis; NaN without
     /// one, or where the spectrum is not known.
     pub(crate) pair: f64,
+    /// Its imaginary part.
+    pub(crate) frequency: f64,
     /// Number of complex pairs, where the spectrum is known.
     pub(crate) pairs: usize,
     /// Observables.
@@ -41,7 +49,11 @@ impl State {
             length: 1.0,
             orientation: 0,
             unstable: None,
+            count: None,
+            certified: false,
+            eigenvalues: Vec::new(),
             pair: f64::NAN,
+            frequency: f64::NAN,
             pairs: 0,
             values: vec![0.0; observables],
             slopes: vec![0.0; observables],
@@ -60,7 +72,11 @@ impl State {
         self.length = other.length;
         self.orientation = other.orientation;
         self.unstable = other.unstable;
+        self.count = other.count;
+        self.certified = other.certified;
+        self.eigenvalues.clone_from(&other.eigenvalues);
         self.pair = other.pair;
+        self.frequency = other.frequency;
         self.pairs = other.pairs;
     }
 

@@ -1,8 +1,8 @@
 //! What a trace is told, and why it could not begin.
 
 use crate::newton::NewtonError;
-use crate::problem::Problem;
-use crate::settings::SettingsError;
+use crate::problem::{Parameter, Problem};
+use crate::settings::{Settings, SettingsError};
 use crate::step::Refusal;
 
 /// Why a trace could not begin.
@@ -49,6 +49,12 @@ pub enum TraceError {
     /// No solution at the start.
     #[error("no solution at the start: {0}")]
     Start(NewtonError),
+    /// A branch without the point that is to be left, or of another problem.
+    #[error("the branch is not one of this problem through that special point: {what}")]
+    Foreign {
+        /// What does not fit.
+        what: &'static str,
+    },
     /// The branch has no tangent at the start.
     #[error("no tangent at the start: {0}")]
     Tangent(Refusal),
@@ -65,6 +71,15 @@ pub struct Progress {
     pub p: f64,
     /// Arclength so far.
     pub s: f64,
+}
+
+/// The range over which the parameter is expected to vary.
+pub(super) fn range(settings: &Settings, start: f64, parameter: &Parameter) -> f64 {
+    match (settings.target, settings.domain) {
+        (Some(target), _) if target != start => (target - start).abs(),
+        (_, Some((lo, hi))) => hi - lo,
+        _ => parameter.scale.abs().max(f64::MIN_POSITIVE),
+    }
 }
 
 /// Checks a vector's length and that it is finite.

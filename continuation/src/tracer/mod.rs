@@ -17,18 +17,22 @@
 
 mod closure;
 mod input;
+mod special;
+mod switching;
 
 pub use input::{Progress, TraceError};
 
-use crate::branch::{Branch, Detail, Event, EventKind, Point, Statistics, Stop, StopReason};
-use crate::events::{Candidate, Detector, Located, Role, Watch, locate};
+use crate::branch::{Branch, Event, Point, Statistics, Stop, StopReason};
+use crate::events::{Detector, Watch};
 use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem};
 use crate::settings::Settings;
 use crate::step::{Constraint, Core, Precision, Refusal, State, StepSize, Weights, judge};
-use input::{check, unknown_observable};
+use input::{check, range, unknown_observable};
+use special::Special;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
+use switching::Departure;
 
 /// Traces one branch; yields its points in order, special points included.
 pub struct Tracer<'a, P: Problem> {
@@ -45,6 +49,8 @@ pub struct Tracer<'a, P: Problem> {
     trial: State,
     work: State,
     left_start: bool,
+    // set until the first step away from a branch point is done
+    departure: Option<Departure>,
     // the latest step that crossed to the other orientation, and where it began
     crossing: Option<f64>,
     anchor: State,
@@ -84,23 +90,12 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let report = newton(problem, &mut start.u, p, &NewtonSettings::default())
             .map_err(TraceError::Start)?;
 
-        let range = match (settings.target, settings.domain) {
-            (Some(target), _) if target != start.p => (target - start.p).abs(),
-            (_, Some((lo, hi))) => hi - lo,
-            _ => parameters[which].scale.abs().max(f64::MIN_POSITIVE),
-        };
+        let range = range(&settings, start.p, &parameters[which]);
         let increasing = settings
             .increasing
             .unwrap_or_else(|| settings.target.is_none_or(|target| target > start.p));
         let unit = Weights { unknowns: 1.0, parameter: 1.0 };
-        let mut core = Core::new(
-            problem,
-            ParamId(which),
-            p,
-            unit,
-            settings.tolerance,
-            settings.max_iterations,
-        );
+        let mut core = Core::new(problem, ParamId(which), p, unit, &settings);
         core.statistics.newton_iterations += report.iterations;
         let natural = problem.unknown_scale(ParamId(which));
         core.start(&mut start, increasing, |du_dp, size| match natural {
@@ -112,6 +107,18 @@ impl<'a, P: Problem> Tracer<'a, P> {
             }
         })
         .map_err(TraceError::Tangent)?;
+        Self::set_up(core, start, p, settings, range)
+    }
+
+    /// The tracer that stands at `start`.
+    fn set_up(
+        core: Core<'a, P>,
+        start: State,
+        p: &[f64],
+        settings: Settings,
+        range: f64,
+    ) -> Result<Self, TraceError> {
+        let problem = core.problem;
         let size = StepSize::new(&settings, range / core.weights.parameter, start.length);
         let detector = Detector::new(&[], problem.observables(), settings.target, settings.domain)
             .map_err(|name| unknown_observable(problem, name))?;
@@ -127,6 +134,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             trial: start.clone(),
             work: start.clone(),
             left_start: false,
+            departure: None,
             crossing: None,
             anchor: start.clone(),
             anchor_s: 0.0,
@@ -222,8 +230,8 @@ impl<'a, P: Problem> Tracer<'a, P> {
             u: x.u.clone(),
             dp_ds: x.tp / x.length,
             unstable,
-            certified: unstable.is_some(),
-            eigenvalues: Vec::new(),
+            certified: unstable.is_some() && self.current.certified,
+            eigenvalues: x.eigenvalues.clone(),
             observables: x.values.clone(),
             event,
         }
@@ -235,9 +243,13 @@ impl<'a, P: Problem> Tracer<'a, P> {
             let detail = format!("the limit of {} points was reached", self.settings.max_points);
             return self.end(StopReason::MaxPoints, detail);
         }
+        if let Some(departure) = self.departure.take() {
+            return self.depart(&departure);
+        }
         let length = self.current.length;
         let shortest = self.size.shortest(length);
         let mut h = self.size.h.clamp(shortest, self.size.longest(length).max(shortest));
+        let first = h;
         loop {
             let final_say = h <= self.size.resolution(length);
             match self.attempt(h, final_say) {
@@ -265,7 +277,9 @@ impl<'a, P: Problem> Tracer<'a, P> {
                         return self.end(
                             StopReason::StepTooSmall,
                             format!(
-                                "at {name} = {p:.10} even a step of {:.1e} was refused: {refusal}",
+                                "at {name} = {p:.10} steps from {:.1e} down to {:.1e} were refused, \
+                                 the last because: {refusal}",
+                                first * length,
                                 2.0 * h * length,
                             ),
                         );
@@ -305,20 +319,13 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let corrected = core.correct(Constraint::Plane(current, h), trial, Precision::Step)?;
         let secant = core.secant(current, trial);
         let tangents = core.weights.dot(&current.mtu, current.tp, &trial.tu, trial.tp);
-        let quality = match judge(settings, current, trial, h, &corrected, secant, tangents) {
-            // a change of orientation that persists in a step this short is a branch point
-            Err(Refusal::Orientation) if final_say => step_quality(tangents),
-            other => other?,
-        };
-        detector.detect(current, trial, h, final_say)?;
-        let found = detector.found().len();
+        let quality = judge(settings, trial, h, &corrected, secant, tangents)?;
+        detector.detect(current, trial, h, core.weights.parameter, final_say)?;
         let s_trial = self.s + self.metric_distance();
-        let mut located: Vec<(Candidate, Located)> = Vec::new();
-        if found > 0 {
-            located = self.locate_all(h, found)?;
-        }
+        // before the location, whose result is left in the same work space
         let returned = self.passes_start(h);
-        self.accept(h, &located, s_trial, returned)?;
+        let special = self.locate_all(h, final_say)?;
+        self.accept(h, &special, s_trial, returned)?;
         let length = self.current.length;
         self.size.accept(h, &quality, &self.settings, length);
         Ok(())
@@ -339,33 +346,19 @@ impl<'a, P: Problem> Tracer<'a, P> {
         du.hypot(self.trial.p - self.current.p)
     }
 
-    /// Locates every candidate of the step, sorted along it; the trace's end cuts the rest off.
-    fn locate_all(&mut self, h: f64, found: usize) -> Result<Vec<(Candidate, Located)>, Refusal> {
-        let Self { core, current, trial, work, detector, settings, .. } = self;
-        let mut located = Vec::with_capacity(found);
-        for candidate in detector.found() {
-            let at = locate(core, current, trial, h, candidate, settings.event_tolerance, work)?;
-            located.push((*candidate, at));
-        }
-        located.sort_by(|a, b| a.1.at.total_cmp(&b.1.at));
-        if let Some(end) = located.iter().position(|(c, _)| c.ends_trace()) {
-            located.truncate(end + 1);
-        }
-        Ok(located)
-    }
-
     /// Records the step's special points and its end.
     fn accept(
         &mut self,
         h: f64,
-        located: &[(Candidate, Located)],
+        special: &[Special],
         s_trial: f64,
         returned: Option<StopReason>,
     ) -> Result<(), Refusal> {
         let (events_before, queue_before) = (self.events.len(), self.queue.len());
         let running = self.running_unstable;
-        for (candidate, place) in located {
-            if let Err(refusal) = self.record(h, candidate, *place, s_trial, located) {
+        for (i, found) in special.iter().enumerate() {
+            let last = i + 1 == special.len();
+            if let Err(refusal) = self.record(h, found, s_trial, last) {
                 self.events.truncate(events_before);
                 self.queue.truncate(queue_before);
                 self.running_unstable = running;
@@ -382,7 +375,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
                 self.end(reason, detail.to_owned());
             }
             // a landing on the step's own end is that point
-            let last_is_end = located.last().is_some_and(|(_, l)| l.at >= h * (1.0 - 1e-12));
+            let last_is_end = special.last().is_some_and(|l| l.place.at >= h * (1.0 - 1e-12));
             if !last_is_end {
                 let point = self.point(&self.trial, s_trial, None, self.trial.unstable);
                 self.queue.push_back(point);
@@ -399,85 +392,6 @@ impl<'a, P: Problem> Tracer<'a, P> {
             let away = self.core.excursion(&self.current.u, &self.start.u);
             self.left_start =
                 away.hypot(self.current.p - self.start.p) > 1.5 * h * self.current.length;
-        }
-        Ok(())
-    }
-
-    /// Recomputes the located state and records it as a point and, unless it only lands on a
-    /// parameter value, as an event.
-    fn record(
-        &mut self,
-        h: f64,
-        candidate: &Candidate,
-        place: Located,
-        s_trial: f64,
-        located: &[(Candidate, Located)],
-    ) -> Result<(), Refusal> {
-        if located.len() > 1 {
-            let Self { core, current, trial, work, settings, .. } = self;
-            locate(core, current, trial, h, candidate, settings.event_tolerance, work)?;
-        }
-        let s = self.s + (s_trial - self.s) * place.at / h;
-        let before = self.running_unstable;
-        let after = match candidate {
-            Candidate::Fold | Candidate::BranchPoint | Candidate::Hopf => self.trial.unstable,
-            _ => before,
-        };
-        self.running_unstable = after;
-        let index = self.emitted + self.queue.len();
-        let kind = match *candidate {
-            Candidate::Fold => Some(EventKind::Fold),
-            Candidate::BranchPoint => Some(EventKind::BranchPoint),
-            Candidate::Hopf => Some(EventKind::Hopf),
-            Candidate::Value { observable, level, .. } => {
-                let name = self.core.problem.observables()[observable].to_owned();
-                Some(if level == 0.0 {
-                    EventKind::Zero(name)
-                } else {
-                    EventKind::Named(format!("{name}-value"))
-                })
-            }
-            Candidate::Extremum { observable } => {
-                let name = self.core.problem.observables()[observable].to_owned();
-                Some(if self.current.slopes[observable] < 0.0 {
-                    EventKind::Minimum(name)
-                } else {
-                    EventKind::Maximum(name)
-                })
-            }
-            Candidate::Parameter { role: Role::Landing, .. } => Some(EventKind::Target),
-            Candidate::Parameter { .. } => None,
-        };
-        let residual = self.core.residual(&self.work).map_err(Refusal::Evaluation)?;
-        let unstable = match (before, after) {
-            (Some(a), Some(b)) => Some(a.min(b)),
-            _ => before,
-        };
-        let event = kind.as_ref().map(|_| self.events.len());
-        let point = self.point(&self.work, s, event, unstable);
-        if let Some(kind) = kind {
-            self.events.push(Event {
-                kind,
-                point: index,
-                p: self.work.p,
-                unstable_before: before,
-                unstable_after: after,
-                residual,
-                error_estimate: place.error * self.work.length,
-                detail: Detail::None,
-            });
-        }
-        self.queue.push_back(point);
-        if candidate.ends_trace() {
-            match candidate {
-                Candidate::Parameter { role: Role::Target, .. } => {
-                    self.end(StopReason::Target, String::new());
-                }
-                Candidate::Parameter { .. } => {
-                    self.end(StopReason::Domain, "the bound of the domain was reached".to_owned());
-                }
-                _ => self.end(StopReason::Target, "an observable reached its value".to_owned()),
-            }
         }
         Ok(())
     }
@@ -509,14 +423,5 @@ impl<P: Problem> Iterator for Tracer<'_, P> {
         let point = self.queue.pop_front();
         self.emitted += usize::from(point.is_some());
         point
-    }
-}
-
-/// Quality of a step over a branch point, where the corrector's contraction means little.
-fn step_quality(tangents: f64) -> crate::step::Quality {
-    crate::step::Quality {
-        angle: tangents.clamp(-1.0, 1.0).acos(),
-        contraction: 0.0,
-        deviation: 0.0,
     }
 }

@@ -56,6 +56,13 @@ pub(crate) fn to_mat(a: &impl Matrix) -> Mat<f64> {
     mat
 }
 
+pub(crate) fn to_dense(mat: &Mat<f64>) -> Dense {
+    let n = mat.nrows();
+    let mut a = Dense::new(n);
+    (0..n * n).for_each(|k| a.set(k / n, k % n, mat[(k / n, k % n)]));
+    a
+}
+
 pub(crate) fn dense_solve(a: &Mat<f64>, b: &[f64]) -> Vec<f64> {
     let rhs = Mat::from_fn(b.len(), 1, |i, _| b[i]);
     let x = a.full_piv_lu().solve(&rhs);

@@ -1,0 +1,170 @@
+//! Eigenvalues and modes of a state: what is about to become, or is, unstable.
+//!
+//! Of an energy's Hessian the lowest eigenvalues of `H x = λ M x`, with the mass matrix or the
+//! metric as `M`, so that they converge under mesh refinement; of `M du/dt = f` the ones with the
+//! largest real part. Symmetric matrices by shift-invert Lanczos with the factorisation that is
+//! there already, where the inertia proves that none is missing; small dense ones by their full
+//! spectrum; others by shift-invert Arnoldi about zero, which proves nothing: an eigenvalue far from
+//! zero with a large imaginary part can be missed.
+
+use crate::linalg::{Lanczos, Matrix};
+use crate::problem::{EvalError, Problem, Stability, check_finite};
+
+/// The most unstable eigenvalues of a state, with their modes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Modes {
+    /// Eigenvalues, (real, imaginary) parts, the most unstable first.
+    pub values: Vec<(f64, f64)>,
+    /// Eigenvectors of real eigenvalues of symmetric problems, of length 1 in the norm of `M`;
+    /// empty where only the values are computed (full spectra of dense matrices).
+    pub vectors: Vec<Vec<f64>>,
+    /// Whether it is certain that no more unstable eigenvalue is missing.
+    pub certified: bool,
+}
+
+/// The `count` most unstable eigenvalues at a state, and their modes.
+///
+/// ```
+/// use continuation::{modes, samples::Bratu};
+/// // −u″ = λ eᵘ at λ = 0: the lowest eigenvalues of −u″ are near (kπ)²
+/// let found = modes(&Bratu::new(400), &vec![0.0; 400], &[0.0], 3)?;
+/// assert!(found.certified);
+/// for (k, (value, _)) in found.values.iter().enumerate() {
+///     let exact = ((k + 1) as f64 * std::f64::consts::PI).powi(2);
+///     assert!((value / exact - 1.0).abs() < 1e-4);
+/// }
+/// # Ok::<(), continuation::EvalError>(())
+/// ```
+///
+/// # Errors
+/// Where the problem has no value at the state.
+pub fn modes<P: Problem>(
+    problem: &P,
+    u: &[f64],
+    p: &[f64],
+    count: usize,
+) -> Result<Modes, EvalError> {
+    let mut jacobian = problem.new_jacobian();
+    let mut r = vec![0.0; problem.dim()];
+    problem.linearise(u, p, &mut r, &mut jacobian)?;
+    check_finite(&r)?;
+    let floor = f64::EPSILON * jacobian.norm();
+    let facts = jacobian.factor(floor);
+    let mut solver = ModeSolver::new(problem, count);
+    let mut values = Vec::new();
+    let certified = solver.solve(problem, &mut jacobian, facts.inertia, &mut values);
+    let vectors = solver.vectors(values.len());
+    Ok(Modes { values, vectors, certified })
+}
+
+/// Computes the most unstable eigenvalues from a factored Jacobian; storage is reused.
+pub(crate) struct ModeSolver<P: Problem> {
+    wanted: usize,
+    sense: Stability,
+    multipliers: usize,
+    mass: Option<P::Jacobian>,
+    lanczos: Option<Lanczos>,
+    start: Vec<f64>,
+    warm: bool,
+}
+
+impl<P: Problem> ModeSolver<P> {
+    pub(crate) fn new(problem: &P, wanted: usize) -> Self {
+        let mut mass = problem.new_jacobian();
+        mass.set_zero();
+        let mass = problem.mass(&mut mass).then_some(mass);
+        ModeSolver {
+            wanted: wanted.min(problem.dim()),
+            sense: problem.stability(),
+            multipliers: problem.multipliers(),
+            mass,
+            lanczos: None,
+            start: Vec::new(),
+            warm: false,
+        }
+    }
+
+    /// All eigenvalues, where a full spectrum is affordable.
+    pub(crate) fn spectrum(&self, jacobian: &P::Jacobian) -> Option<Vec<(f64, f64)>> {
+        jacobian.spectrum(self.mass.as_ref())
+    }
+
+    /// The most unstable eigenvalues to `values`, most unstable first; whether that is certain.
+    pub(crate) fn solve(
+        &mut self,
+        problem: &P,
+        jacobian: &mut P::Jacobian,
+        inertia: Option<(usize, usize)>,
+        values: &mut Vec<(f64, f64)>,
+    ) -> bool {
+        values.clear();
+        if self.wanted == 0 {
+            return false;
+        }
+        if let Some((negative, positive)) = inertia {
+            return self.symmetric(problem, jacobian, negative, positive, values);
+        }
+        if let Some(mut spectrum) = self.spectrum(jacobian) {
+            self.sort(&mut spectrum);
+            spectrum.truncate(self.wanted);
+            values.extend(spectrum);
+            return true;
+        }
+        false
+    }
+
+    /// Sorts by instability.
+    fn sort(&self, values: &mut [(f64, f64)]) {
+        let sign = self.sign();
+        values.sort_by(|a, b| (sign * b.0).total_cmp(&(sign * a.0)).then(b.1.total_cmp(&a.1)));
+    }
+
+    /// +1 where large eigenvalues are unstable, −1 where small ones are.
+    fn sign(&self) -> f64 {
+        if self.sense == Stability::EnergyHessian { -1.0 } else { 1.0 }
+    }
+
+    fn symmetric(
+        &mut self,
+        problem: &P,
+        jacobian: &mut P::Jacobian,
+        negative: usize,
+        positive: usize,
+        values: &mut Vec<(f64, f64)>,
+    ) -> bool {
+        let n = problem.dim();
+        if self.lanczos.is_none() {
+            self.lanczos = Some(Lanczos::new(n, self.wanted));
+            self.start = vec![0.0; n];
+        }
+        let (sign, energy) = (self.sign(), self.sense == Stability::EnergyHessian);
+        let Some(lanczos) = &mut self.lanczos else { return false };
+        // the lowest of H, or those of −J
+        let below = if energy { negative.saturating_sub(self.multipliers) } else { positive };
+        let mass = self.mass.as_ref();
+        let product = |x: &[f64], y: &mut [f64]| match mass {
+            Some(mass) => mass.mul(x, y),
+            None if energy => problem.metric(x, y),
+            None => y.copy_from_slice(x),
+        };
+        let solve = |x: &mut [f64]| {
+            jacobian.solve(x);
+            if !energy {
+                x.iter_mut().for_each(|x| *x = -*x);
+            }
+        };
+        let start = self.warm.then_some(&self.start[..]);
+        let report = lanczos.lowest(0.0, Some(below), product, solve, start);
+        let all = lanczos.values().iter().take(self.wanted);
+        values.extend(all.map(|v| (-sign * v, 0.0)));
+        lanczos.blend(&mut self.start);
+        self.warm = self.start.iter().all(|x| x.is_finite());
+        report.complete
+    }
+
+    /// Eigenvectors of the latest symmetric solution.
+    fn vectors(&self, count: usize) -> Vec<Vec<f64>> {
+        let Some(lanczos) = &self.lanczos else { return Vec::new() };
+        (0..count.min(lanczos.values().len())).map(|i| lanczos.vector(i).to_vec()).collect()
+    }
+}

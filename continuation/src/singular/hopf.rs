@@ -1,0 +1,299 @@
+//! Hopf points by an augmented Newton method, and the first Lyapunov coefficient.
+//!
+//! `A = f_u − iω M` is bordered to a regular complex matrix; the scalar `g` of its inverse vanishes
+//! exactly where `iω` is an eigenvalue. Newton's method in the arclength and `ω` uses
+//! `g_s = −wᴴ (f_u)_s v` and `g_ω = i wᴴ M v` (Govaerts 2000, section 4.3, in complex form). The
+//! coefficient is that of Kuznetsov, *Elements of Applied Bifurcation Theory*, Eq. (10.35):
+//! `l₁ = Re pᴴ[C(q,q,q̄) − 2B(q, A₀⁻¹B(q,q̄)) + B(q̄, (2iωM − A₀)⁻¹B(q,q))] / (2ω)`, `A₀ = f_u`.
+
+use super::probe::{Extended, Probe};
+use crate::branch::{Criticality, HopfForm};
+use crate::events::{bend, interpolate};
+use crate::linalg::{Bordered, Matrix};
+use crate::problem::{EvalError, Problem};
+use crate::step::{Constraint, Core, Precision, Refusal, State, dot};
+
+const MAX_ITERATIONS: usize = 10;
+
+/// A Hopf point on the traced branch.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HopfPoint {
+    /// Scaled distance from the step's first end.
+    pub(crate) at: f64,
+    /// Estimated error, as a scaled length.
+    pub(crate) error: f64,
+    pub(crate) form: Option<HopfForm>,
+}
+
+/// Polishes a Hopf point near the scaled distance `at` from `a`, with eigenvalues near `±iω`.
+/// `None` where the matrix has no complex form; the bracketing search then has the last word.
+pub(crate) fn locate_hopf<P: Problem>(
+    core: &mut Core<'_, P>,
+    a: &State,
+    b: &State,
+    h: f64,
+    mut at: f64,
+    mut omega: f64,
+    x: &mut State,
+) -> Result<Option<HopfPoint>, Refusal> {
+    let mut probe = core.probe();
+    let bend = bend(core, a, b);
+    let mut critical: Option<Critical<P>> = None;
+    let mut last = f64::INFINITY;
+    for _ in 0..MAX_ITERATIONS {
+        interpolate(a, b, h, bend, at, x);
+        core.correct(Constraint::Plane(a, at), x, Precision::Event)?;
+        let z = Extended { u: x.u.clone(), p: x.p };
+        probe.assemble(&z).map_err(Refusal::Evaluation)?;
+        let border = critical.take().map(|c| (c.right, c.left));
+        let Some(found) = Critical::of(&probe, omega, border) else { return Ok(None) };
+        let t = Extended { u: x.tu.clone(), p: x.tp };
+        let (re, im) = found.parts();
+        let by_s = probe.second(&z, &t, 1.0, &[&re, &im]).map_err(Refusal::Evaluation)?;
+        let g_s = found.left.dot(&Complex::join(&by_s[0], &by_s[1]));
+        let g_omega = found.left.dot(&found.mass_right);
+        // g − g_s δs + i g_ω δω = 0, in real and imaginary parts
+        let (ds, dw) = solve2([-g_s.0, -g_omega.1], [-g_s.1, g_omega.0], [-found.g.0, -found.g.1]);
+        // δs is measured along the tangent at x
+        let cosine = core.weights.dot(&a.mtu, a.tp, &x.tu, x.tp);
+        let (step, relative) = (ds * cosine, (dw / omega).abs());
+        if !(step.is_finite() && relative.is_finite())
+            || at + step < -0.5 * h
+            || at + step > 1.5 * h
+        {
+            return Ok(None);
+        }
+        at += step;
+        omega += dw;
+        let size = (step / h).abs().max(relative);
+        let done = size <= 1e-13 || (size < 1e-9 && size > 0.25 * last);
+        last = size;
+        critical = Some(found);
+        if done {
+            if !(0.0..=h).contains(&at) {
+                return Ok(None);
+            }
+            let form = critical.and_then(|c| normal_form(&mut probe, &z, &t, omega, &c).ok());
+            core.statistics.newton_iterations += probe.assemblies;
+            let error = step.abs().max(f64::EPSILON);
+            return Ok(Some(HopfPoint { at, error, form: form.flatten() }));
+        }
+    }
+    Ok(None)
+}
+
+/// A complex vector, real and imaginary parts in turn.
+#[derive(Debug, Clone)]
+struct Complex(Vec<f64>);
+
+impl Complex {
+    fn join(re: &[f64], im: &[f64]) -> Self {
+        Complex(re.iter().zip(im).flat_map(|(a, b)| [*a, *b]).collect())
+    }
+
+    fn split(&self) -> (Vec<f64>, Vec<f64>) {
+        self.0.chunks_exact(2).map(|c| (c[0], c[1])).unzip()
+    }
+
+    /// `selfᴴ y`.
+    fn dot(&self, y: &Complex) -> (f64, f64) {
+        let pairs = self.0.chunks_exact(2).zip(y.0.chunks_exact(2));
+        pairs.fold((0.0, 0.0), |(re, im), (a, b)| {
+            (re + a[0] * b[0] + a[1] * b[1], im + a[0] * b[1] - a[1] * b[0])
+        })
+    }
+
+    /// `i self`.
+    fn turned(&self) -> Self {
+        Complex(self.0.chunks_exact(2).flat_map(|c| [-c[1], c[0]]).collect())
+    }
+
+    fn normalise(&mut self) {
+        let norm = dot(&self.0, &self.0).sqrt();
+        self.0.iter_mut().for_each(|x| *x /= norm);
+    }
+}
+
+/// Null vectors of `f_u − iω M`, bordered.
+struct Critical<P: Problem> {
+    right: Complex,
+    left: Complex,
+    /// `M` times the right vector.
+    mass_right: Complex,
+    g: (f64, f64),
+    /// `f_u − iω M`, and the mass matrix, where it is not the identity.
+    mass: Mass<P>,
+}
+
+impl<P: Problem> Critical<P> {
+    /// Bordered null vectors at an assembled point; borders from before, or arbitrary ones that
+    /// are improved once.
+    fn of(probe: &Probe<'_, P>, omega: f64, border: Option<(Complex, Complex)>) -> Option<Self> {
+        let n = probe.dim();
+        let mass = Mass::of(probe)?;
+        let mut matrix = mass.shifted(probe, omega)?;
+        let mut bordered = Bordered::new(2 * n, 2);
+        let known = border.is_some();
+        let arbitrary =
+            |seed: usize| Complex((0..2 * n).map(|i| super::kernel::arbitrary(seed, i)).collect());
+        let (mut right, mut left) = border.unwrap_or_else(|| (arbitrary(1), arbitrary(2)));
+        let mut g = (0.0, 0.0);
+        for _ in 0..if known { 1 } else { 3 } {
+            right.normalise();
+            left.normalise();
+            bordered.row_mut(0).copy_from_slice(&right.0);
+            bordered.row_mut(1).copy_from_slice(&right.turned().0);
+            bordered.column_mut(0).copy_from_slice(&left.0);
+            bordered.column_mut(1).copy_from_slice(&left.turned().0);
+            bordered.factor(&mut matrix);
+            let mut tail = [1.0, 0.0];
+            let mut v = vec![0.0; 2 * n];
+            bordered.solve(&mut matrix, &mut v, &mut tail);
+            g = (tail[0], tail[1]);
+            let mut tail = [1.0, 0.0];
+            let mut w = vec![0.0; 2 * n];
+            bordered.solve_transpose(&mut matrix, &mut w, &mut tail);
+            (right, left) = (Complex(v), Complex(w));
+        }
+        let mass_right = mass.times(&right);
+        let finite = |c: &Complex| c.0.iter().all(|x| x.is_finite());
+        (finite(&right) && finite(&left)).then_some(Critical { right, left, mass_right, g, mass })
+    }
+
+    /// The right vector's real and imaginary parts.
+    fn parts(&self) -> (Extended, Extended) {
+        let (re, im) = self.right.split();
+        (Extended { u: re, p: 0.0 }, Extended { u: im, p: 0.0 })
+    }
+}
+
+/// The mass matrix; the identity where the problem has none.
+struct Mass<P: Problem>(P::Jacobian);
+
+impl<P: Problem> Mass<P> {
+    fn of(probe: &Probe<'_, P>) -> Option<Self> {
+        let mut m = probe.problem.new_jacobian();
+        m.set_zero();
+        if !probe.problem.mass(&mut m) {
+            m.set_zero();
+            if !m.add_identity(1.0) {
+                return None;
+            }
+        }
+        Some(Mass(m))
+    }
+
+    /// `f_u − iω M` in real form.
+    fn shifted(&self, probe: &Probe<'_, P>, omega: f64) -> Option<P::Jacobian> {
+        let mut imaginary = self.0.clone();
+        imaginary.set_zero();
+        imaginary.axpy(-omega, &self.0);
+        probe.jacobian.complex(&imaginary)
+    }
+
+    fn times(&self, x: &Complex) -> Complex {
+        let (re, im) = x.split();
+        let (mut a, mut b) = (re.clone(), im.clone());
+        self.0.mul(&re, &mut a);
+        self.0.mul(&im, &mut b);
+        Complex::join(&a, &b)
+    }
+}
+
+/// The normal form at a located point; `t` is the branch's tangent there.
+fn normal_form<P: Problem>(
+    probe: &mut Probe<'_, P>,
+    z: &Extended,
+    t: &Extended,
+    omega: f64,
+    critical: &Critical<P>,
+) -> Result<Option<HopfForm>, EvalError> {
+    let mut q = critical.right.clone();
+    q.normalise();
+    let mq = critical.mass.times(&q);
+    // p such that pᴴ M q = 1
+    let (re, im) = critical.left.dot(&mq);
+    let size = re * re + im * im;
+    let (c, s) = (re / size, im / size);
+    let p = Complex(
+        critical
+            .left
+            .0
+            .chunks_exact(2)
+            .flat_map(|w| [c * w[0] - s * w[1], c * w[1] + s * w[0]])
+            .collect(),
+    );
+    let (a, b) = q.split();
+    let (a, b) = (Extended { u: a, p: 0.0 }, Extended { u: b, p: 0.0 });
+    let by_branch = probe.second(z, t, 1.0, &[&a, &b])?;
+    let reference = super::max_abs(&by_branch[0]).max(super::max_abs(&by_branch[1]));
+    let amplitude = if reference > 0.0 { probe.amplitude(z, &a, reference) } else { None };
+    let amplitude = amplitude.unwrap_or(1.0);
+    let mut value = [f64::NAN; 2];
+    for (value, x) in value.iter_mut().zip([amplitude, 0.5 * amplitude]) {
+        let Some(l) = lyapunov(probe, z, omega, critical, &p, (&a, &b), x)? else {
+            return Ok(None);
+        };
+        *value = l;
+    }
+    let [lyapunov, second] = value;
+    let lyapunov_error = (lyapunov - second).abs();
+    let criticality = match lyapunov {
+        l if l.abs() <= 3.0 * lyapunov_error => None,
+        l if l < 0.0 => Some(Criticality::Supercritical),
+        _ => Some(Criticality::Subcritical),
+    };
+    Ok(Some(HopfForm { frequency: omega, lyapunov, lyapunov_error, criticality }))
+}
+
+fn lyapunov<P: Problem>(
+    probe: &mut Probe<'_, P>,
+    z: &Extended,
+    omega: f64,
+    critical: &Critical<P>,
+    p: &Complex,
+    (a, b): (&Extended, &Extended),
+    amplitude: f64,
+) -> Result<Option<f64>, EvalError> {
+    let add = |x: &[f64], s: f64, y: &[f64]| -> Vec<f64> {
+        x.iter().zip(y).map(|(x, y)| x + s * y).collect()
+    };
+    let real = |u: Vec<f64>| Extended { u, p: 0.0 };
+    let from_a = probe.second(z, a, amplitude, &[a, b])?;
+    let from_b = probe.second(z, b, amplitude, &[b])?;
+    let (aa, ab, bb) = (&from_a[0], &from_a[1], &from_b[0]);
+    // h11 = A⁻¹ B(q, q̄)
+    let mut h11 = add(aa, 1.0, bb);
+    let floor = f64::EPSILON * probe.jacobian.norm();
+    probe.jacobian.factor(floor);
+    probe.jacobian.solve(&mut h11);
+    let h11 = real(h11);
+    // h20 = (2iωM − A)⁻¹ B(q, q)
+    let Some(mut shifted) = critical.mass.shifted(probe, 2.0 * omega) else { return Ok(None) };
+    let twice: Vec<f64> = ab.iter().map(|x| 2.0 * x).collect();
+    let mut h20 = Complex::join(&add(aa, -1.0, bb), &twice);
+    let floor = f64::EPSILON * shifted.norm();
+    shifted.factor(floor);
+    shifted.solve(&mut h20.0);
+    let (c, d) = h20.split();
+    let (c, d) = (real(c.iter().map(|x| -x).collect()), real(d.iter().map(|x| -x).collect()));
+    let by_a = probe.second(z, a, amplitude, &[&h11, &c, &d])?;
+    let by_b = probe.second(z, b, amplitude, &[&h11, &c, &d])?;
+    let cubic_a = probe.third(z, a, amplitude, &[a, b])?;
+    let cubic_b = probe.third(z, b, amplitude, &[a, b])?;
+    let mut re = add(&cubic_a[0], 1.0, &cubic_b[0]);
+    let mut im = add(&cubic_a[1], 1.0, &cubic_b[1]);
+    re = add(&re, -2.0, &by_a[0]);
+    im = add(&im, -2.0, &by_b[0]);
+    re = add(&add(&re, 1.0, &by_a[1]), 1.0, &by_b[2]);
+    im = add(&add(&im, 1.0, &by_a[2]), -1.0, &by_b[1]);
+    let (value, _) = p.dot(&Complex::join(&re, &im));
+    let l1 = value / (2.0 * omega);
+    Ok(l1.is_finite().then_some(l1))
+}
+
+/// Solves two equations with rows `a`, `b`... and right-hand sides `r`.
+fn solve2(a: [f64; 2], b: [f64; 2], r: [f64; 2]) -> (f64, f64) {
+    let determinant = a[0] * b[1] - a[1] * b[0];
+    ((r[0] * b[1] - a[1] * r[1]) / determinant, (a[0] * r[1] - r[0] * b[0]) / determinant)
+}

@@ -1,0 +1,361 @@
+//! Points where `[F_u F_p]` loses rank, by an augmented Newton method.
+//!
+//! With `k` the rank defect, the matrix is bordered to a regular one,
+//! ```text
+//!     | F_u  F_p  B |
+//! K = | C_u  C_p  0 |,   K⁻¹ = | V  · |,   V: right vectors, W: left vectors, G: k × (k + 1),
+//!                              | G  W |
+//! ```
+//! and `G = 0` exactly where the rank is short by `k`: `V` then spans the kernel, `W` the left
+//! kernel (Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria*, SIAM, 2000,
+//! ch. 5, the minimally augmented systems). Along the kernel coordinates `y` the state moves by
+//! `V y` and `dG_ji/dy_l = -w_jᵀ F_zz[v_i, v_l]`, so that Newton's method (Gauss-Newton for
+//! `k > 1`, where symmetry makes the equations consistent) needs differences of the Jacobian in
+//! `k + 1` directions and no further factorisation. The residual is solved as `F + B β = 0`: `β`
+//! vanishes at a true branch point, and measures by how much an imperfect one is unfolded.
+
+use super::probe::{Extended, Probe};
+use super::small::least_squares;
+use crate::linalg::{Bordered, Dense, Matrix};
+use crate::problem::{EvalError, Problem};
+
+const MAX_ITERATIONS: usize = 14;
+/// Corrections below this, in natural amplitudes, have converged.
+const CONVERGED: f64 = 1e-12;
+/// Corrections that no longer shrink are rounding if they are below this.
+const ROUNDING: f64 = 1e-8;
+
+/// Points nearer to each other than this, in natural amplitudes, are one with a larger kernel.
+const COINCIDENT: f64 = 1e-8;
+
+/// Why no singular point was found.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Failure {
+    /// The problem has no value on the way.
+    Evaluation(EvalError),
+    /// The iteration leaves the neighbourhood of its start or does not converge.
+    NoConvergence,
+    /// The kernel is smaller than was asked for: these are estimates of the points, near to each
+    /// other, where it has one dimension.
+    Apart(Vec<Extended>),
+}
+
+impl From<EvalError> for Failure {
+    fn from(error: EvalError) -> Self {
+        Failure::Evaluation(error)
+    }
+}
+
+/// A point where the rank of `[F_u F_p]` is short by `k`.
+#[derive(Debug, Clone)]
+pub(crate) struct Singular {
+    pub(crate) z: Extended,
+    /// `k + 1` vectors that span the kernel, orthonormal in the scaled metric; the first one is
+    /// the nearest to the direction that was given.
+    pub(crate) right: Vec<Extended>,
+    /// `k` vectors that span the left kernel.
+    pub(crate) left: Vec<Vec<f64>>,
+    /// `form[j][i][l] = w_jᵀ F_zz[v_i, v_l]`.
+    pub(crate) form: Vec<Vec<Vec<f64>>>,
+    /// Natural amplitude of each right vector; 1 for the first.
+    pub(crate) amplitude: Vec<f64>,
+    /// The last correction, in natural amplitudes.
+    pub(crate) correction: f64,
+    /// Size of the gap, in natural amplitudes, by which an imperfect branch point is unfolded; 0
+    /// where rounding explains it.
+    pub(crate) gap: f64,
+    /// The bordered system at the point, for further solves.
+    pub(crate) frame: Frame,
+}
+
+/// The borders, and the solver that holds them.
+#[derive(Debug, Clone)]
+pub(crate) struct Frame {
+    k: usize,
+    bordered: Bordered,
+    rhs: Vec<f64>,
+    tail: Vec<f64>,
+}
+
+impl Frame {
+    fn new(n: usize, k: usize) -> Self {
+        Frame { k, bordered: Bordered::new(n, k + 1), rhs: vec![0.0; n], tail: vec![0.0; k + 1] }
+    }
+
+    fn set_row(&mut self, i: usize, c: &Extended) {
+        self.bordered.row_mut(i).copy_from_slice(&c.u);
+        self.bordered.set_corner(i, 0, c.p);
+    }
+
+    fn set_column(&mut self, j: usize, b: &[f64]) {
+        self.bordered.column_mut(j + 1).copy_from_slice(b);
+    }
+
+    fn factor<P: Problem>(&mut self, probe: &mut Probe<'_, P>) {
+        self.bordered.column_mut(0).copy_from_slice(&probe.by_parameter);
+        self.bordered.factor(&mut probe.jacobian);
+    }
+
+    /// Column `i` of `V`, and of `G`.
+    fn right<P: Problem>(&mut self, probe: &mut Probe<'_, P>, i: usize) -> (Extended, Vec<f64>) {
+        self.rhs.fill(0.0);
+        self.tail.fill(0.0);
+        self.tail[i] = 1.0;
+        self.bordered.solve(&mut probe.jacobian, &mut self.rhs, &mut self.tail);
+        (Extended { u: self.rhs.clone(), p: self.tail[0] }, self.tail[1..].to_vec())
+    }
+
+    /// Row `j` of `W`.
+    fn left<P: Problem>(&mut self, probe: &mut Probe<'_, P>, j: usize) -> Vec<f64> {
+        self.rhs.fill(0.0);
+        self.tail.fill(0.0);
+        self.tail[j + 1] = 1.0;
+        self.bordered.solve_transpose(&mut probe.jacobian, &mut self.rhs, &mut self.tail);
+        self.rhs.clone()
+    }
+
+    /// Solves `K [x; β] = [r; 0]`.
+    pub(crate) fn solve<P: Problem>(
+        &mut self,
+        probe: &mut Probe<'_, P>,
+        r: &[f64],
+    ) -> (Extended, Vec<f64>) {
+        self.rhs.copy_from_slice(r);
+        self.tail.fill(0.0);
+        self.bordered.solve(&mut probe.jacobian, &mut self.rhs, &mut self.tail);
+        (Extended { u: self.rhs.clone(), p: self.tail[0] }, self.tail[1..].to_vec())
+    }
+
+    /// Borders by what the latest factors say is nearly in the kernels: the right vectors,
+    /// orthonormalised, and the left ones, normalised.
+    fn renew<P: Problem>(&mut self, probe: &mut Probe<'_, P>) -> Option<()> {
+        let mut right: Vec<Extended> = Vec::with_capacity(self.k + 1);
+        for i in 0..=self.k {
+            let (mut v, _) = self.right(probe, i);
+            for done in &right {
+                let along = probe.covector(done).dot(&v);
+                v.add(-along, done);
+            }
+            let norm = probe.norm(&v);
+            if !(norm.is_finite() && norm > 0.0) {
+                return None;
+            }
+            v.scale(1.0 / norm);
+            right.push(v);
+        }
+        let mut left: Vec<Vec<f64>> = (0..self.k).map(|j| self.left(probe, j)).collect();
+        super::small::orthonormalise(&mut left)?;
+        for (i, v) in right.iter().enumerate() {
+            let c = probe.covector(v);
+            self.set_row(i, &c);
+        }
+        for (j, w) in left.iter().enumerate() {
+            self.set_column(j, w);
+        }
+        self.factor(probe);
+        Some(())
+    }
+}
+
+/// Numbers without any pattern, in (-1, 1), always the same.
+pub(super) fn arbitrary(seed: usize, i: usize) -> f64 {
+    let x =
+        ((i + 1) as f64 * 0.754_877_666_246_692_7 + seed as f64 * 0.569_840_290_998_053_2).fract();
+    2.0 * (x * 1e4).fract() - 1.0
+}
+
+/// Finds the point near `seed` where the rank is short by `k`; `tangent` is a direction of the
+/// branch that is followed.
+pub(crate) fn find<P: Problem>(
+    probe: &mut Probe<'_, P>,
+    seed: &Extended,
+    tangent: &Extended,
+    k: usize,
+) -> Result<Singular, Failure> {
+    let n = probe.dim();
+    let mut z = seed.clone();
+    probe.assemble(&z)?;
+    let mut frame = Frame::new(n, k);
+    let row = probe.covector(tangent);
+    frame.set_row(0, &row);
+    for i in 1..=k {
+        let u = (0..n).map(|m| arbitrary(i, m)).collect();
+        let row = probe.covector(&Extended { u, p: 0.0 });
+        frame.set_row(i, &row);
+        let column: Vec<f64> = (0..n).map(|m| arbitrary(i + k, m)).collect();
+        frame.set_column(i - 1, &column);
+    }
+    frame.factor(probe);
+    for _ in 0..2 {
+        frame.renew(probe).ok_or(Failure::NoConvergence)?;
+    }
+    let mut amplitude = Vec::new();
+    let mut last = f64::INFINITY;
+    for iteration in 0..MAX_ITERATIONS {
+        let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent)?;
+        let residual: Vec<f64> = probe.residual.iter().map(|r| -r).collect();
+        let (mut step, beta) = frame.solve(probe, &residual);
+        let y = least_squares(&local.matrix(), &local.defect()).ok_or(Failure::NoConvergence)?;
+        let widest = amplitude.iter().fold(1.0, |m: f64, x| m.max(*x));
+        let mut correction = probe.norm(&step) / widest;
+        for ((y, v), x) in y.iter().zip(&local.right).zip(&amplitude) {
+            step.add(*y, v);
+            correction = correction.max(y.abs() / x);
+        }
+        if !correction.is_finite() || (iteration > 3 && correction > 10.0 * last.max(CONVERGED)) {
+            return Err(Failure::NoConvergence);
+        }
+        let size = 1.0 + probe.norm(&z) / widest;
+        let converged = correction <= CONVERGED * size;
+        let stagnant = correction <= ROUNDING * size && correction > 0.25 * last;
+        z.add(1.0, &step);
+        if converged || stagnant {
+            return finish(probe, frame, z, amplitude, tangent, correction, &beta);
+        }
+        last = correction;
+        probe.assemble(&z)?;
+        frame.factor(probe);
+        frame.renew(probe).ok_or(Failure::NoConvergence)?;
+    }
+    Err(Failure::NoConvergence)
+}
+
+fn finish<P: Problem>(
+    probe: &mut Probe<'_, P>,
+    mut frame: Frame,
+    z: Extended,
+    mut amplitude: Vec<f64>,
+    tangent: &Extended,
+    correction: f64,
+    beta: &[f64],
+) -> Result<Singular, Failure> {
+    probe.assemble(&z)?;
+    frame.factor(probe);
+    frame.renew(probe).ok_or(Failure::NoConvergence)?;
+    let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent)?;
+    // lengths, in natural amplitudes, over which the quadratic form makes the defect and the
+    // unfolding
+    let x = &amplitude;
+    let (mut curved, mut defect) = (0.0_f64, 0.0_f64);
+    for (f, g) in local.form.iter().zip(&local.g) {
+        for i in 0..x.len() {
+            defect = defect.max((g[i] * x[i]).abs());
+            for l in 0..x.len() {
+                curved = curved.max((f[i][l] * x[i] * x[l]).abs());
+            }
+        }
+    }
+    if curved > 0.0 && defect > COINCIDENT * curved {
+        return Err(Failure::Apart(local.apart(&z)));
+    }
+    let unfolding = super::max_abs(beta);
+    let terms = probe.jacobian.norm() * super::max_abs(&z.u)
+        + super::max_abs(&probe.by_parameter) * z.p.abs();
+    let rounding = 32.0 * f64::EPSILON * terms * (z.u.len() as f64).sqrt();
+    let real = curved > 0.0 && unfolding > rounding;
+    let gap = if real { (unfolding / curved).sqrt() } else { 0.0 };
+    let Local { right, left, form, .. } = local;
+    Ok(Singular { z, right, left, form, amplitude, correction, gap, frame })
+}
+
+/// Vectors, defect and quadratic form at an assembled and factored point.
+struct Local {
+    right: Vec<Extended>,
+    left: Vec<Vec<f64>>,
+    g: Vec<Vec<f64>>,
+    form: Vec<Vec<Vec<f64>>>,
+}
+
+impl Local {
+    fn of<P: Problem>(
+        probe: &mut Probe<'_, P>,
+        frame: &mut Frame,
+        z: &Extended,
+        amplitude: &mut Vec<f64>,
+        tangent: &Extended,
+    ) -> Result<Self, Failure> {
+        let k = frame.k;
+        let (mut right, mut g) = (Vec::new(), vec![Vec::new(); k]);
+        for i in 0..=k {
+            let (v, column) = frame.right(probe, i);
+            right.push(v);
+            for (g, c) in g.iter_mut().zip(column) {
+                g.push(c);
+            }
+        }
+        let left: Vec<Vec<f64>> = (0..k).map(|j| frame.left(probe, j)).collect();
+        if amplitude.is_empty() {
+            *amplitude = amplitudes(probe, z, &right, tangent)?;
+        }
+        let mut form = vec![vec![vec![0.0; k + 1]; k + 1]; k];
+        let all: Vec<&Extended> = right.iter().collect();
+        for (l, v) in right.iter().enumerate() {
+            let second = probe.second(z, v, amplitude[l], &all)?;
+            for (j, w) in left.iter().enumerate() {
+                for (i, y) in second.iter().enumerate() {
+                    form[j][i][l] = crate::step::dot(w, y);
+                }
+            }
+        }
+        // differences in both orders: their mean is symmetric
+        for f in &mut form {
+            for i in 0..=k {
+                for l in 0..i {
+                    // the parameter direction first: its differences are exact for most problems
+                    let mean = 0.5 * (f[i][l] + f[l][i]);
+                    (f[i][l], f[l][i]) = (mean, mean);
+                }
+            }
+        }
+        Ok(Local { right, left, g, form })
+    }
+
+    /// The derivative of the defect, row by row.
+    fn matrix(&self) -> Vec<Vec<f64>> {
+        self.form.iter().flatten().cloned().collect()
+    }
+
+    /// Where along the branch the single modes become critical: the real eigenvalues `s` of
+    /// `G − s G_s` on the vectors other than the branch's own.
+    fn apart(&self, z: &Extended) -> Vec<Extended> {
+        let k = self.left.len();
+        let (mut g, mut slope) = (Dense::new(k), Dense::new(k));
+        for j in 0..k {
+            for i in 0..k {
+                g.set(j, i, self.g[j][i + 1]);
+                slope.set(j, i, self.form[j][i + 1][0]);
+            }
+        }
+        let values = g.spectrum(Some(&slope)).unwrap_or_default();
+        let real = values.into_iter().filter(|(re, im)| im.abs() <= 1e-6 * re.hypot(*im));
+        real.map(|(s, _)| {
+            let mut seed = z.clone();
+            seed.add(s, &self.right[0]);
+            seed
+        })
+        .collect()
+    }
+
+    fn defect(&self) -> Vec<f64> {
+        self.g.iter().flatten().copied().collect()
+    }
+}
+
+/// Natural amplitudes of the right vectors, measured against what the branch's own direction does
+/// to the Jacobian over the range of the parameter.
+fn amplitudes<P: Problem>(
+    probe: &mut Probe<'_, P>,
+    z: &Extended,
+    right: &[Extended],
+    tangent: &Extended,
+) -> Result<Vec<f64>, EvalError> {
+    let mut amplitude = vec![1.0];
+    let others: Vec<&Extended> = right[1..].iter().collect();
+    let along = probe.second(z, tangent, 1.0, &others)?;
+    for (v, by_branch) in right[1..].iter().zip(&along) {
+        let reference = super::max_abs(by_branch);
+        let found = if reference > 0.0 { probe.amplitude(z, v, reference) } else { None };
+        amplitude.push(found.unwrap_or(1.0));
+    }
+    Ok(amplitude)
+}

@@ -1,0 +1,201 @@
+//! Special points of the Jacobian: augmented Newton methods that meet them to rounding, and normal
+//! forms that say what they are.
+//!
+//! Bracketing on the branch comes first (a sign or a count that changes within a step); what is
+//! here turns the bracket into a point, or refuses: a change that no singular point on the branch
+//! explains was a jump, and the step must be shorter.
+
+mod fold;
+mod forms;
+mod hopf;
+mod kernel;
+mod multiple;
+mod probe;
+mod roots;
+mod small;
+
+pub(crate) use fold::fold_form;
+pub(crate) use hopf::locate_hopf;
+pub(crate) use probe::{Extended, Probe};
+
+use crate::branch::Crossing;
+use crate::events::{bend, interpolate};
+use crate::problem::Problem;
+use crate::step::{Core, Refusal, State};
+use kernel::Failure;
+
+pub(crate) use crate::linalg::max_abs;
+
+/// A gap, in natural amplitudes, above which a branch point is not one: the branches turn away
+/// from each other, and each can be followed.
+const MAX_GAP: f64 = 1e-6;
+/// Distance from the interpolated branch, relative to the step, above which a point is not on it.
+const MAX_OFF: f64 = 0.1;
+/// Least cosine between the branch's expected direction and one of the tangents.
+const MIN_ALIGNMENT: f64 = 0.9;
+/// Where in the step Newton's method starts, in turn.
+const SEEDS: [f64; 3] = [0.5, 0.15, 0.85];
+
+/// A branch point on the traced branch.
+#[derive(Debug, Clone)]
+pub(crate) struct Crossed {
+    /// Scaled distance from the step's first end.
+    pub(crate) at: f64,
+    /// Estimated error, as a scaled length.
+    pub(crate) error: f64,
+    pub(crate) crossing: Crossing,
+    pub(crate) state: State,
+}
+
+/// The step in which a branch point is sought.
+#[derive(Clone, Copy)]
+struct Segment<'s> {
+    a: &'s State,
+    b: &'s State,
+    /// Scaled length.
+    h: f64,
+    /// Cosine between the tangents at both ends.
+    bend: f64,
+}
+
+/// Locates the branch point with a kernel of `k` dimensions between `a` and `b`, a scaled length
+/// `h` apart, or the `k` simple ones that lie there close together.
+pub(crate) fn locate_branch_points<P: Problem>(
+    core: &mut Core<'_, P>,
+    a: &State,
+    b: &State,
+    h: f64,
+    k: usize,
+) -> Result<Vec<Crossed>, Refusal> {
+    let mut probe = core.probe();
+    let segment = Segment { a, b, h, bend: bend(core, a, b) };
+    let mut refusal = Refusal::Orientation;
+    let mut found = None;
+    for seed in SEEDS {
+        let mut x = a.clone();
+        interpolate(a, b, h, segment.bend, seed * h, &mut x);
+        let z = Extended { u: x.u.clone(), p: x.p };
+        match attempt(core, &mut probe, segment, &z, k, &mut x) {
+            Ok(crossed) => found = Some(vec![crossed]),
+            Err(Failure::Evaluation(error)) => refusal = Refusal::Evaluation(error),
+            Err(Failure::Apart(seeds)) if seeds.len() == k => {
+                let one = |z: &Extended| attempt(core, &mut probe, segment, z, 1, &mut x).ok();
+                found = distinct(seeds.iter().map_while(one).collect(), k);
+            }
+            Err(_) => {}
+        }
+        if found.is_some() {
+            break;
+        }
+    }
+    core.statistics.newton_iterations += probe.assemblies;
+    found.ok_or(refusal)
+}
+
+/// The points in order, if there are `k` different ones.
+fn distinct(mut points: Vec<Crossed>, k: usize) -> Option<Vec<Crossed>> {
+    points.sort_by(|a, b| a.at.total_cmp(&b.at));
+    let apart = points.windows(2).all(|w| w[1].at - w[0].at > 10.0 * (w[0].error + w[1].error));
+    (points.len() == k && apart).then_some(points)
+}
+
+/// Newton's method from `z`; the point found must be on the branch, within the step, and be crossed
+/// along the branch.
+fn attempt<P: Problem>(
+    core: &mut Core<'_, P>,
+    probe: &mut Probe<'_, P>,
+    segment: Segment<'_>,
+    z: &Extended,
+    k: usize,
+    x: &mut State,
+) -> Result<Crossed, Failure> {
+    let Segment { a, b, h, bend } = segment;
+    let along = |probe: &mut Probe<'_, P>, z: &Extended| {
+        let mut d = z.clone();
+        d.add(-1.0, &Extended { u: a.u.clone(), p: a.p });
+        probe.covector(&Extended { u: a.tu.clone(), p: a.tp }).dot(&d)
+    };
+    let seed = along(probe, z).clamp(0.0, h);
+    let tangent = tangent_at(probe, a, b, h, bend, seed);
+    let mut found = kernel::find(probe, z, &tangent, k)?;
+    if found.gap > MAX_GAP {
+        return Err(Failure::NoConvergence);
+    }
+    // on this branch, within this step
+    let from = |s: &State, z: &Extended| {
+        let mut d = z.clone();
+        d.add(-1.0, &Extended { u: s.u.clone(), p: s.p });
+        d
+    };
+    let from_a = from(a, &found.z);
+    let at = along(probe, &found.z);
+    if !(-1e-6 * h..=h * (1.0 + 1e-6)).contains(&at) {
+        return Err(Failure::NoConvergence);
+    }
+    let at = at.clamp(0.0, h);
+    interpolate(a, b, h, bend, at, x);
+    let off = from(x, &found.z);
+    if probe.norm(&off) > MAX_OFF * h {
+        return Err(Failure::NoConvergence);
+    }
+    let expected = tangent_at(probe, a, b, h, bend, at);
+    let analysed = if k == 1 {
+        forms::simple(probe, &mut found, &expected)?
+    } else {
+        multiple::analyse(probe, &mut found, &expected)?
+    };
+    let Some(analysed) = analysed else { return Err(Failure::NoConvergence) };
+    let (own, other) = analysed.alignment;
+    if own < MIN_ALIGNMENT || other > own {
+        return Err(Failure::NoConvergence);
+    }
+    // the same branch before and after
+    let mut back = from(b, &found.z);
+    back.scale(-1.0);
+    for side in [from_a, back] {
+        let distance = probe.norm(&side);
+        if distance < 1e-3 * h {
+            continue;
+        }
+        let cosine = |probe: &mut Probe<'_, P>, v: &Extended| {
+            let norm = probe.norm(v) * distance;
+            probe.covector(v).dot(&side).abs() / norm
+        };
+        let along = cosine(probe, &analysed.traced);
+        let others = analysed.crossing.leaving.iter();
+        let astray = others
+            .map(|d| cosine(probe, &Extended { u: d.du.clone(), p: d.dp }))
+            .fold(0.0, f64::max);
+        if along < MIN_ALIGNMENT || astray >= along {
+            return Err(Failure::NoConvergence);
+        }
+    }
+    core.place(x, &found.z, &analysed.traced).map_err(Failure::Evaluation)?;
+    let error = found.correction.max(found.gap).max(f64::EPSILON);
+    Ok(Crossed { at, error, crossing: analysed.crossing, state: x.clone() })
+}
+
+/// Direction of the interpolated branch at a distance `at`, of unit scaled length.
+fn tangent_at<P: Problem>(
+    probe: &mut Probe<'_, P>,
+    a: &State,
+    b: &State,
+    h: f64,
+    bend: f64,
+    at: f64,
+) -> Extended {
+    let t = at / h;
+    // slopes of the Hermite basis
+    let (g0, g1) = (6.0 * t * t - 6.0 * t, 6.0 * t - 6.0 * t * t);
+    let (s0, s1) = (3.0 * t * t - 4.0 * t + 1.0, 3.0 * t * t - 2.0 * t);
+    let mut d = Extended::zero(a.u.len());
+    for (w, x) in [(g0 / h, a), (g1 / h, b)] {
+        d.add(w, &Extended { u: x.u.clone(), p: x.p });
+    }
+    for (w, x) in [(s0, a), (s1 / bend, b)] {
+        d.add(w, &Extended { u: x.tu.clone(), p: x.tp });
+    }
+    let norm = probe.norm(&d);
+    d.scale(1.0 / norm);
+    d
+}

@@ -1,0 +1,228 @@
+//! Derivatives of `[F_u F_p]` along directions, by differences with steps that the problem itself
+//! sets.
+//!
+//! Differences of exact Jacobians: the first derivative over four points is right to about 1e-12,
+//! the second to about 1e-8, of what the nonlinearity does over its natural amplitude.
+
+use crate::linalg::Matrix;
+use crate::problem::{EvalError, ParamId, Problem, check_finite};
+use crate::step::{Weights, dot};
+
+/// A vector of unknowns and continued parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Extended {
+    pub(crate) u: Vec<f64>,
+    pub(crate) p: f64,
+}
+
+impl Extended {
+    pub(crate) fn zero(n: usize) -> Self {
+        Extended { u: vec![0.0; n], p: 0.0 }
+    }
+
+    /// `self += a x`.
+    pub(crate) fn add(&mut self, a: f64, x: &Extended) {
+        for (u, x) in self.u.iter_mut().zip(&x.u) {
+            *u += a * x;
+        }
+        self.p += a * x.p;
+    }
+
+    pub(crate) fn scale(&mut self, a: f64) {
+        self.u.iter_mut().for_each(|u| *u *= a);
+        self.p *= a;
+    }
+
+    /// Plain inner product, of a covector and a vector.
+    pub(crate) fn dot(&self, x: &Extended) -> f64 {
+        dot(&self.u, &x.u) + self.p * x.p
+    }
+}
+
+/// Step of first differences, in natural amplitudes.
+const FIRST: f64 = 1e-3;
+/// Step of second differences.
+const SECOND: f64 = 1e-2;
+
+/// Evaluates a problem near a point; allocated when a special point is analysed.
+pub(crate) struct Probe<'a, P: Problem> {
+    pub(crate) problem: &'a P,
+    pub(crate) which: ParamId,
+    pub(crate) weights: Weights,
+    pub(crate) jacobian: P::Jacobian,
+    pub(crate) residual: Vec<f64>,
+    pub(crate) by_parameter: Vec<f64>,
+    /// Jacobian assemblies so far.
+    pub(crate) assemblies: usize,
+    p: Vec<f64>,
+    shifted: P::Jacobian,
+    place: Vec<f64>,
+    slope: Vec<f64>,
+    product: Vec<f64>,
+    metric: Vec<f64>,
+}
+
+impl<'a, P: Problem> Probe<'a, P> {
+    pub(crate) fn new(problem: &'a P, which: ParamId, p: &[f64], weights: Weights) -> Self {
+        let n = problem.dim();
+        let vector = || vec![0.0; n];
+        Probe {
+            problem,
+            which,
+            weights,
+            jacobian: problem.new_jacobian(),
+            residual: vector(),
+            by_parameter: vector(),
+            assemblies: 0,
+            p: p.to_vec(),
+            shifted: problem.new_jacobian(),
+            place: vector(),
+            slope: vector(),
+            product: vector(),
+            metric: vector(),
+        }
+    }
+
+    pub(crate) fn dim(&self) -> usize {
+        self.residual.len()
+    }
+
+    /// Residual, Jacobian and parameter derivative at `z`.
+    pub(crate) fn assemble(&mut self, z: &Extended) -> Result<(), EvalError> {
+        self.p[self.which.0] = z.p;
+        self.assemblies += 1;
+        self.problem.linearise(&z.u, &self.p, &mut self.residual, &mut self.jacobian)?;
+        let column = &mut self.by_parameter;
+        self.problem.parameter_derivative(&z.u, &self.p, self.which, column)?;
+        check_finite(&self.residual)?;
+        check_finite(&self.by_parameter)
+    }
+
+    /// `x` as a covector of the scaled metric.
+    pub(crate) fn covector(&mut self, x: &Extended) -> Extended {
+        let Weights { unknowns, parameter } = self.weights;
+        let mut y = Extended::zero(x.u.len());
+        self.problem.metric(&x.u, &mut y.u);
+        y.u.iter_mut().for_each(|y| *y /= unknowns * unknowns);
+        y.p = x.p / (parameter * parameter);
+        y
+    }
+
+    /// Length in the scaled metric.
+    pub(crate) fn norm(&mut self, x: &Extended) -> f64 {
+        self.problem.metric(&x.u, &mut self.metric);
+        self.weights.norm(&self.metric, &x.u, x.p)
+    }
+
+    /// Length in the problem's metric.
+    pub(crate) fn length(&mut self, x: &Extended) -> f64 {
+        self.problem.metric(&x.u, &mut self.metric);
+        (dot(&self.metric, &x.u) + x.p * x.p).max(0.0).sqrt()
+    }
+
+    /// Adds `a [F_u F_p](z + h v) x_i` to `out[i]` for every `x_i`.
+    fn accumulate(
+        &mut self,
+        z: &Extended,
+        v: &Extended,
+        h: f64,
+        a: f64,
+        xs: &[&Extended],
+        out: &mut [Vec<f64>],
+    ) -> Result<(), EvalError> {
+        for ((place, u), v) in self.place.iter_mut().zip(&z.u).zip(&v.u) {
+            *place = u + h * v;
+        }
+        self.p[self.which.0] = z.p + h * v.p;
+        self.assemblies += 1;
+        self.problem.jacobian(&self.place, &self.p, &mut self.shifted)?;
+        self.problem.parameter_derivative(&self.place, &self.p, self.which, &mut self.slope)?;
+        for (x, out) in xs.iter().zip(out) {
+            self.shifted.mul(&x.u, &mut self.product);
+            for ((o, y), f) in out.iter_mut().zip(&self.product).zip(&self.slope) {
+                *o += a * (y + x.p * f);
+            }
+            check_finite(out)?;
+        }
+        Ok(())
+    }
+
+    fn stencil(
+        &mut self,
+        z: &Extended,
+        v: &Extended,
+        terms: &[(f64, f64)],
+        xs: &[&Extended],
+    ) -> Result<Vec<Vec<f64>>, EvalError> {
+        let mut out = vec![vec![0.0; self.dim()]; xs.len()];
+        for &(h, a) in terms {
+            self.accumulate(z, v, h, a, xs, &mut out)?;
+        }
+        Ok(out)
+    }
+
+    /// `F_zz[v, x_i]` for every `x_i`; `amplitude` is the natural multiple of `v`.
+    pub(crate) fn second(
+        &mut self,
+        z: &Extended,
+        v: &Extended,
+        amplitude: f64,
+        xs: &[&Extended],
+    ) -> Result<Vec<Vec<f64>>, EvalError> {
+        let h = FIRST * amplitude;
+        let a = 1.0 / (12.0 * h);
+        let terms = [(h, 8.0 * a), (-h, -8.0 * a), (2.0 * h, -a), (-2.0 * h, a)];
+        self.stencil(z, v, &terms, xs)
+    }
+
+    /// `F_zzz[v, v, x_i]` for every `x_i`, and `F_zz[v, x_i]` from the same evaluations.
+    pub(crate) fn third(
+        &mut self,
+        z: &Extended,
+        v: &Extended,
+        amplitude: f64,
+        xs: &[&Extended],
+    ) -> Result<Vec<Vec<f64>>, EvalError> {
+        let h = SECOND * amplitude;
+        let a = 1.0 / (12.0 * h * h);
+        let terms =
+            [(h, 16.0 * a), (-h, 16.0 * a), (2.0 * h, -a), (-2.0 * h, -a), (0.0, -30.0 * a)];
+        self.stencil(z, v, &terms, xs)
+    }
+
+    /// The multiple `X` of `v` for which `[F_u F_p](z + X v) − [F_u F_p](z)`, applied to `v`, is as
+    /// large as `reference`: where the nonlinearity matters. It scales with the unknowns, whatever
+    /// their unit. `None` if no multiple within twelve decades is found: the problem is linear in
+    /// `v` as far as can be seen.
+    pub(crate) fn amplitude(&mut self, z: &Extended, v: &Extended, reference: f64) -> Option<f64> {
+        let mut x = 1.0;
+        let mut out = vec![vec![0.0; self.dim()]];
+        let (mut too_small, mut too_large) = (0.0_f64, f64::INFINITY);
+        for _ in 0..40 {
+            out[0].fill(0.0);
+            let change = self
+                .accumulate(z, v, x, 1.0, &[v], &mut out)
+                .and_then(|()| self.accumulate(z, v, 0.0, -1.0, &[v], &mut out))
+                .map(|()| super::max_abs(&out[0]) / reference);
+            match change {
+                Ok(m) if (0.05..=5.0).contains(&m) => return Some(x),
+                Ok(m) if m < 0.05 => {
+                    too_small = too_small.max(x);
+                    x *= 8.0;
+                }
+                _ => {
+                    too_large = too_large.min(x);
+                    x /= 8.0;
+                }
+            }
+            if x >= too_large || x <= too_small {
+                // between a point that is too small and one that is too large or has no value
+                return Some(if too_small > 0.0 { (too_small * too_large).sqrt() } else { x });
+            }
+            if !(1e-12..=1e12).contains(&x) {
+                return None;
+            }
+        }
+        None
+    }
+}

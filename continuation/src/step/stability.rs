@@ -1,0 +1,84 @@
+//! How many modes are unstable, and how surely that is known.
+//!
+//! From the inertia where the factors report it (symmetric matrices), else from the full spectrum
+//! of a dense matrix: both are certain. Else from a few eigenvalues by iteration, which is not.
+
+use super::State;
+use crate::modes::ModeSolver;
+use crate::problem::{Problem, Stability};
+
+/// Eigenvalues computed at every point where nothing else tells the stability.
+const FEW: usize = 10;
+
+/// Counts unstable modes of one problem.
+pub(crate) struct StabilityCount<P: Problem> {
+    sense: Stability,
+    multipliers: usize,
+    /// Number of eigenvalues that are reported at every point.
+    wanted: usize,
+    solver: ModeSolver<P>,
+    values: Vec<(f64, f64)>,
+}
+
+impl<P: Problem> StabilityCount<P> {
+    pub(crate) fn new(problem: &P, wanted: usize) -> Self {
+        StabilityCount {
+            sense: problem.stability(),
+            multipliers: problem.multipliers(),
+            wanted,
+            solver: ModeSolver::new(problem, wanted),
+            values: Vec::new(),
+        }
+    }
+
+    /// Whether eigenvalues are wanted, so that the factors must belong to the very state.
+    pub(crate) fn wants_eigenvalues(&self) -> bool {
+        self.wanted > 0
+    }
+
+    /// Sets the counts at `x`, whose Jacobian is factored.
+    pub(crate) fn judge(
+        &mut self,
+        problem: &P,
+        jacobian: &mut P::Jacobian,
+        inertia: Option<(usize, usize)>,
+        x: &mut State,
+    ) {
+        (x.unstable, x.count, x.certified) = (None, None, false);
+        (x.pair, x.frequency, x.pairs) = (f64::NAN, f64::NAN, 0);
+        x.eigenvalues.clear();
+        let energy = self.sense == Stability::EnergyHessian;
+        if let Some((negative, positive)) = inertia {
+            x.count = Some(if energy { negative } else { positive });
+            x.certified = true;
+            self.solver.solve(problem, jacobian, inertia, &mut x.eigenvalues);
+        } else if let Some(spectrum) = self.solver.spectrum(jacobian) {
+            self.read(&spectrum, energy, x);
+            x.certified = true;
+            if self.wanted > 0 {
+                self.solver.solve(problem, jacobian, None, &mut x.eigenvalues);
+            }
+        }
+        if self.sense != Stability::None {
+            let multipliers = if energy { self.multipliers } else { 0 };
+            x.unstable = x.count.map(|count| count.saturating_sub(multipliers));
+        }
+    }
+
+    /// Counts in a spectrum, or in a part of it.
+    fn read(&self, spectrum: &[(f64, f64)], energy: bool, x: &mut State) {
+        let largest = spectrum.iter().fold(0.0, |m: f64, (re, im)| m.max(re.hypot(*im)));
+        let zero = 4.0 * spectrum.len() as f64 * f64::EPSILON * largest;
+        let sign = if energy { -1.0 } else { 1.0 };
+        x.count = Some(spectrum.iter().filter(|(re, _)| sign * re > zero).count());
+        if energy {
+            return;
+        }
+        let pairs = spectrum.iter().filter(|(_, im)| *im > 0.0);
+        x.pairs = pairs.clone().count();
+        let nearest = pairs.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+        if let Some((re, im)) = nearest {
+            (x.pair, x.frequency) = (*re, *im);
+        }
+    }
+}

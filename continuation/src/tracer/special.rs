@@ -1,0 +1,216 @@
+//! Special points of a step: located one after the other, then recorded.
+
+use super::Tracer;
+use crate::branch::{Detail, Event, EventKind, StopReason};
+use crate::events::{Candidate, Located, Role, locate};
+use crate::problem::Problem;
+use crate::singular::{fold_form, locate_branch_points, locate_hopf};
+use crate::step::{Refusal, State};
+
+/// Part of the step to which a Hopf point is bracketed before Newton's method takes over.
+const BRACKET: f64 = 1e-3;
+
+/// A located special point of a step.
+pub(super) struct Special {
+    pub(super) candidate: Candidate,
+    pub(super) place: Located,
+    detail: Detail,
+    state: State,
+}
+
+impl<P: Problem> Tracer<'_, P> {
+    /// Locates every candidate of the step, sorted along it; the trace's end cuts the rest off.
+    pub(super) fn locate_all(&mut self, h: f64, final_say: bool) -> Result<Vec<Special>, Refusal> {
+        if self.detector.found().is_empty() {
+            return Ok(Vec::new());
+        }
+        let candidates = self.detector.found().to_vec();
+        let mut located: Vec<Special> = Vec::with_capacity(candidates.len());
+        // branch points first: a pitchfork met from its side is not a fold besides
+        let mut own_fold = false;
+        for candidate in &candidates {
+            if let Candidate::BranchPoint { kernel } = *candidate {
+                self.locate_crossings(h, kernel, final_say, &mut located)?;
+            }
+        }
+        for special in &located {
+            if let Detail::Crossing(crossing) = &special.detail {
+                own_fold |= crossing.from_side;
+            }
+        }
+        let fold_too = !located.is_empty() && candidates.contains(&Candidate::Fold);
+        if fold_too && !own_fold && !final_say {
+            return Err(Refusal::SeveralEvents);
+        }
+        for candidate in &candidates {
+            let done = matches!(candidate, Candidate::BranchPoint { .. })
+                || (own_fold && *candidate == Candidate::Fold);
+            if !done {
+                located.push(self.locate_one(h, candidate)?);
+            }
+        }
+        located.sort_by(|a, b| a.place.at.total_cmp(&b.place.at));
+        if let Some(end) = located.iter().position(|l| l.candidate.ends_trace()) {
+            located.truncate(end + 1);
+        }
+        Ok(located)
+    }
+
+    fn locate_crossings(
+        &mut self,
+        h: f64,
+        kernel: usize,
+        final_say: bool,
+        located: &mut Vec<Special>,
+    ) -> Result<(), Refusal> {
+        let Self { core, current: a, trial: b, work, settings, .. } = self;
+        let candidate = Candidate::BranchPoint { kernel };
+        match locate_branch_points(core, a, b, h, kernel) {
+            Ok(found) => {
+                for one in found {
+                    let kernel = one.crossing.multiplicity;
+                    located.push(Special {
+                        candidate: Candidate::BranchPoint { kernel },
+                        place: Located { at: one.at, error: one.error },
+                        detail: Detail::Crossing(one.crossing),
+                        state: one.state,
+                    });
+                }
+            }
+            Err(refusal) if !final_say => return Err(refusal),
+            // steps cannot become shorter: as near as bisection comes
+            Err(_) => {
+                let tolerance = settings.event_tolerance;
+                let place = match locate(core, a, b, h, &candidate, tolerance, work) {
+                    Ok(place) => place,
+                    Err(_) => {
+                        work.copy_from(b);
+                        Located { at: h, error: h }
+                    }
+                };
+                let state = work.clone();
+                located.push(Special { candidate, place, detail: Detail::None, state });
+            }
+        }
+        Ok(())
+    }
+
+    /// Locates a candidate other than a branch point.
+    fn locate_one(&mut self, h: f64, candidate: &Candidate) -> Result<Special, Refusal> {
+        let Self { core, current: a, trial: b, work, settings, .. } = self;
+        let tolerance = settings.event_tolerance;
+        let (place, detail) = match *candidate {
+            Candidate::Hopf => {
+                let place = locate(core, a, b, h, candidate, BRACKET * h, work)?;
+                let (at, omega) = (place.at, work.frequency);
+                match locate_hopf(core, a, b, h, at, omega, work)? {
+                    Some(found) => {
+                        let place = Located { at: found.at, error: found.error };
+                        (place, found.form.map_or(Detail::None, Detail::Hopf))
+                    }
+                    None => (locate(core, a, b, h, candidate, tolerance, work)?, Detail::None),
+                }
+            }
+            _ => {
+                let place = locate(core, a, b, h, candidate, tolerance, work)?;
+                let mut detail = Detail::None;
+                if *candidate == Candidate::Fold {
+                    let left = core.left_at_fold();
+                    let mut probe = core.probe();
+                    if let Ok(form) = fold_form(&mut probe, work, &left) {
+                        detail = Detail::Fold(form);
+                    }
+                    core.statistics.newton_iterations += probe.assemblies;
+                }
+                (place, detail)
+            }
+        };
+        Ok(Special { candidate: *candidate, place, detail, state: work.clone() })
+    }
+
+    /// Records a located state as a point and, unless it only lands on a parameter value, as an
+    /// event. `last` says that no further one follows in this step.
+    pub(super) fn record(
+        &mut self,
+        h: f64,
+        special: &Special,
+        s_trial: f64,
+        last: bool,
+    ) -> Result<(), Refusal> {
+        let Special { candidate, place, detail, state } = special;
+        let s = self.s + (s_trial - self.s) * place.at / h;
+        let before = self.running_unstable;
+        let after = match candidate {
+            Candidate::BranchPoint { kernel } if !last => {
+                between(before, self.trial.unstable, *kernel)
+            }
+            Candidate::Fold | Candidate::BranchPoint { .. } | Candidate::Hopf => {
+                self.trial.unstable
+            }
+            _ => before,
+        };
+        self.running_unstable = after;
+        let index = self.emitted + self.queue.len();
+        let kind = self.kind(candidate);
+        let residual = self.core.residual(state).map_err(Refusal::Evaluation)?;
+        let unstable = match (before, after) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            _ => before,
+        };
+        let event = kind.as_ref().map(|_| self.events.len());
+        let point = self.point(state, s, event, unstable);
+        if let Some(kind) = kind {
+            self.events.push(Event {
+                kind,
+                point: index,
+                p: state.p,
+                unstable_before: before,
+                unstable_after: after,
+                residual,
+                error_estimate: place.error * state.length,
+                detail: detail.clone(),
+            });
+        }
+        self.queue.push_back(point);
+        if candidate.ends_trace() {
+            match candidate {
+                Candidate::Parameter { role: Role::Target, .. } => {
+                    self.end(StopReason::Target, String::new());
+                }
+                Candidate::Parameter { .. } => {
+                    self.end(StopReason::Domain, "the bound of the domain was reached".to_owned());
+                }
+                _ => self.end(StopReason::Target, "an observable reached its value".to_owned()),
+            }
+        }
+        Ok(())
+    }
+
+    /// What a candidate is called; `None` for a point that is no event.
+    fn kind(&self, candidate: &Candidate) -> Option<EventKind> {
+        let name = |observable: usize| self.core.problem.observables()[observable].to_owned();
+        match *candidate {
+            Candidate::Fold => Some(EventKind::Fold),
+            Candidate::BranchPoint { .. } => Some(EventKind::BranchPoint),
+            Candidate::Hopf => Some(EventKind::Hopf),
+            Candidate::Value { observable, level: 0.0, .. } => {
+                Some(EventKind::Zero(name(observable)))
+            }
+            Candidate::Value { observable, .. } => {
+                Some(EventKind::Named(format!("{}-value", name(observable))))
+            }
+            Candidate::Extremum { observable } if self.current.slopes[observable] < 0.0 => {
+                Some(EventKind::Minimum(name(observable)))
+            }
+            Candidate::Extremum { observable } => Some(EventKind::Maximum(name(observable))),
+            Candidate::Parameter { role: Role::Landing, .. } => Some(EventKind::Target),
+            Candidate::Parameter { .. } => None,
+        }
+    }
+}
+
+/// The count after the first of several crossings, of `kernel` modes, on the way to `after`.
+fn between(before: Option<usize>, after: Option<usize>, kernel: usize) -> Option<usize> {
+    let (before, after) = (before?, after?);
+    Some(if after > before { before + kernel } else { before.saturating_sub(kernel) })
+}
