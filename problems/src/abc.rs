@@ -9,7 +9,7 @@
 //! origin: Hopf points 0.204184535701, 0.229839037648, 0.259957854245, 0.346208521607, not in this
 //! order along the branch.
 
-use crate::{Allowed, Components, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
+use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::{DenseProblem, ParamId};
 
 const SOURCE: &str = "recomputed in multiple precision; AUTO-07p demo abc";
@@ -41,7 +41,10 @@ fn rates(x: &[f64], p: &[f64], r: &mut [f64]) {
 }
 
 pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Output, ProblemError> {
-    let problem = DenseProblem::from_residual(3, &["p"], rates).with_scale(ParamId(0), 0.1);
-    let problem = Components::new(problem, &["u", "v", "w"]);
+    let problem = DenseProblem::from_residual(3, &["p"], rates)
+        .with_scale(ParamId(0), 0.1)
+        .observing("u", |x, _| x[0])
+        .observing("v", |x, _| x[1])
+        .observing("w", |x, _| x[2]);
     Ok(visitor.visit(&problem, Setup::new(ENTRY.parameter, vec![0.0; 3], request)))
 }

@@ -199,10 +199,10 @@ pub(crate) static ENTRY: Entry = Entry {
     ],
     elements: Some(Elements { default: 99, least: 8, most: 20_000, what: "interior nodes" }),
     known: &[
-        Known::branch_point(6.998_354_840_182_087, 1e-10, BRANCH).form("pitchfork"),
+        Known::branch_point(6.998_354_840_182_087, 1e-9, BRANCH).form("pitchfork"),
         Known::fold(7.128_892_032_527_913, 1e-10, FOLD),
         Known::fold(-2.129_714_438_683_358, 1e-10, FOLD),
-        Known::branch_point(-1.999_177_246_337_531, 1e-10, BRANCH).form("pitchfork"),
+        Known::branch_point(-1.999_177_246_337_531, 1e-9, BRANCH).form("pitchfork"),
     ],
     id: Id::ShallowArch,
 };

@@ -22,7 +22,6 @@ pub mod arch;
 pub mod bratu;
 pub mod chan;
 pub mod co_oxidation;
-mod components;
 pub mod crossings;
 pub mod cusp;
 mod entry;
@@ -39,7 +38,6 @@ pub mod snaking;
 pub mod swift_hohenberg;
 mod visit;
 
-pub use components::Components;
 pub use entry::{Allowed, Constant, Elements, Entry, Known, On, ProblemError, Request};
 pub use visit::{Observer, Setup, Visitor};
 

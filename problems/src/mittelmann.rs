@@ -153,7 +153,7 @@ pub(crate) static ENTRY: Entry = Entry {
             1e-11,
             "u = 1 + m/10, 30 x 30 cells; 0.151974940576 in the limit",
         )
-        .form("simple"),
+        .form("pitchfork"),
     ],
     id: Id::Mittelmann,
 };

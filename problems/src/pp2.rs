@@ -7,7 +7,7 @@
 //! On the branch of prey alone, which leaves there: branch point 0.821904345374 (predators enter),
 //! fold 0.832929322234. On the branch with both: Hopf 0.671593847479.
 
-use crate::{Allowed, Components, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
+use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::DenseProblem;
 
 const SOURCE: &str = "recomputed in multiple precision; AUTO-07p demo pp2";
@@ -40,6 +40,8 @@ fn rates(x: &[f64], p: &[f64], r: &mut [f64]) {
 }
 
 pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Output, ProblemError> {
-    let problem = Components::new(DenseProblem::from_residual(2, &["p"], rates), &["u", "v"]);
+    let problem = DenseProblem::from_residual(2, &["p"], rates)
+        .observing("u", |x, _| x[0])
+        .observing("v", |x, _| x[1]);
     Ok(visitor.visit(&problem, Setup::new(ENTRY.parameter, vec![0.0; 2], request)))
 }

@@ -1,6 +1,6 @@
 //! What is asked of a problem is checked, and refused by key, value and what is allowed.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use problems::{Allowed, ProblemError, Request, find};
 use std::ops::ControlFlow;
