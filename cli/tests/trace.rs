@@ -114,3 +114,56 @@ fn catalogue_problems_have_their_own_columns() {
     assert_eq!(fold["parameter"], "lambda");
     assert!((fold["lambda"].as_f64().unwrap() - 3.513_827_869_849_8).abs() < 1e-10);
 }
+
+#[test]
+fn every_problem_of_the_catalogue_can_be_traced_and_checked() {
+    let place = tempfile::tempdir().unwrap();
+    let listed = arclen(place.path(), &["list"]);
+    let listed = String::from_utf8(listed.stdout).unwrap();
+    for entry in problems::catalogue() {
+        let line = listed.lines().find(|line| line.trim_start().starts_with(entry.name));
+        assert!(line.unwrap().ends_with(entry.summary), "{line:?}");
+        let checked = arclen(place.path(), &["check", entry.name]);
+        assert_eq!(checked.status.code(), Some(0), "{}", entry.name);
+        fs::write(place.path().join("again.toml"), &checked.stdout).unwrap();
+        let output = arclen(place.path(), &["trace", "again.toml", "--out", "o", "--quiet"]);
+        let out = place.path().join("o");
+        let json = events(&out);
+        let complete = ["target", "closed-loop", "domain"].map(Value::from);
+        let expected = if complete.contains(&json["stopped_because"]) { 0 } else { 3 };
+        assert_eq!(output.status.code(), Some(expected), "{}", entry.name);
+        assert_eq!(json["parameter"], entry.parameter);
+        let first: f64 = rows(&out)[0][1].parse().unwrap();
+        assert_eq!(first, entry.start, "{}", entry.name);
+        let picture = fs::read_to_string(out.join("diagram.svg"));
+        assert!(picture.unwrap().contains("<svg"), "{}", entry.name);
+    }
+}
+
+#[test]
+fn values_that_make_no_problem_are_input_errors() {
+    let place = tempfile::tempdir().unwrap();
+    for (arguments, parts) in [
+        (
+            ["trace", "shallow-arch", "--set", "parameters.rise=-2"],
+            ["parameters.rise = -2", "must be positive"],
+        ),
+        (
+            ["check", "euler-column", "--set", "mesh.elements=3"],
+            ["mesh.elements = 3", "a whole number from 8 to 100000"],
+        ),
+        (["check", "pitchfork", "--set", "path.start=2"], ["path.start = 2", "must be negative"]),
+        (
+            ["trace", "jkr-load", "--set", "path.start=-5"],
+            ["path.start = -5", "must be greater than -4.71238898038469"],
+        ),
+    ] {
+        let output = arclen(place.path(), &arguments);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        for part in parts {
+            assert!(message.contains(part), "{part}: {message}");
+        }
+    }
+    assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
+}

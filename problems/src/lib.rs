@@ -1,120 +1,103 @@
-//! The catalogue: bifurcation problems with known answers, each traced by its name.
+//! The catalogue: bifurcation problems with known answers, each to be had by its name.
 //!
-//! Every entry uses nothing but the public interface of [`continuation`].
+//! Every problem has a module that gives the equation, its discretisation, where it comes from and
+//! what is known of it. An [`Entry`] carries the defaults and the known special points as data; a
+//! [`Visitor`] does with any of them what it likes, without naming one. Nothing but the public
+//! interface of [`continuation`] is used.
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//!
+//! let column = problems::find("euler-column").ok_or("no such problem")?;
+//! let mut request = column.request();
+//! request.settings.target = Some(9.5);
+//! let branch = column.trace(&request, &mut |_| ControlFlow::Continue(()))?;
+//! assert!(branch.stopped.reason.is_complete());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
-use continuation::samples::{Bratu, Cusp};
-use continuation::{Branch, Problem, Progress, Settings, TraceError, Tracer, Watch};
-use std::ops::ControlFlow;
+pub mod ab;
+pub mod abc;
+pub mod arch;
+pub mod bratu;
+pub mod chan;
+pub mod co_oxidation;
+pub mod crossings;
+pub mod cusp;
+mod entry;
+pub mod enz;
+pub mod euler_column;
+mod grid;
+pub mod jkr;
+pub mod mittelmann;
+pub mod ode;
+pub mod plp;
+pub mod pp2;
+pub mod pressurised_sphere;
+pub mod snaking;
+pub mod swift_hohenberg;
+mod visit;
 
-/// Progress is told to this function, which may stop the trace.
-pub type Observer<'o> = dyn FnMut(&Progress) -> ControlFlow<()> + 'o;
+pub use entry::{Allowed, Constant, Elements, Entry, Known, On, ProblemError, Request};
+pub use visit::{Observer, Setup, Visitor};
 
-/// A problem of the catalogue, its defaults and how to trace it.
-#[derive(Clone, Copy)]
-pub struct Entry {
-    /// Its name.
-    pub name: &'static str,
-    /// What it is and what is known of it.
-    pub summary: &'static str,
-    /// The continued parameter.
-    pub parameter: &'static str,
-    /// Where the parameter starts.
-    pub start: f64,
-    /// Where the trace ends.
-    pub end: f64,
-    /// Further parameters and their defaults.
-    pub parameters: &'static [(&'static str, f64)],
-    /// Default number of nodes or elements, where the problem has a mesh.
-    pub elements: Option<usize>,
-    run: fn(&Request, &mut Observer<'_>) -> Result<Branch, TraceError>,
-}
-
-/// What is asked of a trace.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Request {
-    /// Start of the continued parameter.
-    pub start: f64,
-    /// Values of the further parameters, in the order of [`Entry::parameters`].
-    pub parameters: Vec<f64>,
-    /// Number of nodes or elements.
-    pub elements: usize,
-    /// How to trace; its target is the end.
-    pub settings: Settings,
-}
-
-impl Entry {
-    /// Traces the problem.
-    ///
-    /// # Errors
-    /// When the start is unusable.
-    pub fn trace(
-        &self,
-        request: &Request,
-        observer: &mut Observer<'_>,
-    ) -> Result<Branch, TraceError> {
-        (self.run)(request, observer)
-    }
-}
-
-/// All problems of the catalogue.
-pub fn catalogue() -> &'static [Entry] {
+/// All problems of the catalogue, by name.
+pub fn catalogue() -> &'static [&'static Entry] {
     &ENTRIES
 }
 
-static ENTRIES: [Entry; 2] = [
-    Entry {
-        name: "bratu",
-        summary: "Bratu problem u'' + lambda exp(u) = 0 through its fold at 3.5138 to max u = 8",
-        parameter: "lambda",
-        start: 0.0,
-        end: -1.0, // never reached: the trace ends at max u = 8
-        parameters: &[],
-        elements: Some(800),
-        run: bratu,
-    },
-    Entry {
-        name: "cusp",
-        summary: "mu + lambda x - x^3 = 0, with folds at mu = -/+ 2 (lambda/3)^(3/2)",
-        parameter: "mu",
-        start: -2.0,
-        end: 2.0,
-        parameters: &[("lambda", 1.0)],
-        elements: None,
-        run: cusp,
-    },
-];
-
-fn run<P: Problem>(
-    problem: &P,
-    parameter: &str,
-    u: &[f64],
-    p: &[f64],
-    request: &Request,
-    watches: &[Watch],
-    observer: &mut Observer<'_>,
-) -> Result<Branch, TraceError> {
-    let tracer = Tracer::new(problem, parameter, u, p, request.settings.clone())?;
-    Ok(tracer.watching(watches)?.run(observer))
+/// The problem of this name.
+pub fn find(name: &str) -> Option<&'static Entry> {
+    ENTRIES.into_iter().find(|entry| entry.name == name)
 }
 
-/// The branch leaves λ = 0 upwards, turns at the fold and comes back at ever larger amplitude; the
-/// trace ends at max u = 8.
-fn bratu(request: &Request, observer: &mut Observer<'_>) -> Result<Branch, TraceError> {
-    let mut request = request.clone();
-    request.settings.increasing = Some(true);
-    let problem = Bratu::new(request.elements);
-    let u = vec![0.0; problem.dim()];
-    let watches = [Watch::stop_at("max_u", 8.0)];
-    run(&problem, "lambda", &u, &[request.start], &request, &watches, observer)
+/// One table: the entry, what identifies it, what builds it.
+macro_rules! entries {
+    ($count:literal: $($id:ident, $entry:path, $visit:path;)*) => {
+        static ENTRIES: [&Entry; $count] = [$(&$entry),*];
+
+        /// Which problem an entry is.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub(crate) enum Id {
+            $(
+                #[doc = stringify!($entry)]
+                $id,
+            )*
+        }
+
+        impl Id {
+            /// Builds the problem and hands it to the visitor.
+            fn visit<V: Visitor>(
+                self,
+                request: &Request,
+                visitor: V,
+            ) -> Result<V::Output, ProblemError> {
+                match self {
+                    $(Id::$id => $visit(request, visitor),)*
+                }
+            }
+        }
+    };
 }
 
-fn cusp(request: &Request, observer: &mut Observer<'_>) -> Result<Branch, TraceError> {
-    let lambda = request.parameters.first().copied().unwrap_or(1.0);
-    // the root of μ + λ x − x³ of largest magnitude, on the side of μ
-    let mu = request.start;
-    let mut x = mu.signum() * (1.0 + mu.abs() + lambda.abs());
-    for _ in 0..100 {
-        x -= (x * x * x - lambda * x - mu) / (3.0 * x * x - lambda);
-    }
-    run(&Cusp, "mu", &[x], &[mu, lambda], request, &[Watch::zero("x")], observer)
+entries! { 19:
+    Ab, ab::ENTRY, ab::visit;
+    Abc, abc::ENTRY, abc::visit;
+    Bratu, bratu::ENTRY, bratu::visit;
+    Chan, chan::ENTRY, chan::visit;
+    CoOxidation, co_oxidation::ENTRY, co_oxidation::visit;
+    Cusp, cusp::ENTRY, cusp::visit;
+    Enz, enz::ENTRY, enz::visit;
+    EulerColumn, euler_column::ENTRY, euler_column::visit;
+    JkrGrip, jkr::GRIP_ENTRY, jkr::grip;
+    JkrLoad, jkr::LOAD_ENTRY, jkr::load;
+    Mittelmann, mittelmann::ENTRY, mittelmann::visit;
+    Pitchfork, crossings::PITCHFORK, crossings::pitchfork;
+    Plp, plp::ENTRY, plp::visit;
+    Pp2, pp2::ENTRY, pp2::visit;
+    PressurisedSphere, pressurised_sphere::ENTRY, pressurised_sphere::visit;
+    ShallowArch, arch::ENTRY, arch::visit;
+    SwiftHohenberg, swift_hohenberg::ENTRY, swift_hohenberg::visit;
+    Snaking, snaking::ENTRY, snaking::visit;
+    Transcritical, crossings::TRANSCRITICAL, crossings::transcritical;
 }

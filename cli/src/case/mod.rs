@@ -174,10 +174,34 @@ pub(crate) struct CatalogueEntry {
     pub(crate) start: f64,
     /// Where it ends by default.
     pub(crate) end: f64,
-    /// The other parameters with their defaults.
-    pub(crate) parameters: Vec<(String, f64)>,
-    /// Number of elements by default, for problems that have a mesh.
-    pub(crate) elements: Option<usize>,
+    /// Where the continued parameter may start.
+    pub(crate) start_allowed: problems::Allowed,
+    /// The other parameters.
+    pub(crate) parameters: Vec<CatalogueParameter>,
+    /// Number of elements, for problems that have a mesh.
+    pub(crate) elements: Option<ElementRange>,
+}
+
+/// A parameter of a problem of the catalogue.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CatalogueParameter {
+    /// Its name.
+    pub(crate) name: String,
+    /// Its default.
+    pub(crate) default: f64,
+    /// What it may be.
+    pub(crate) allowed: problems::Allowed,
+}
+
+/// How many elements a mesh may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct ElementRange {
+    /// The default.
+    pub(crate) default: usize,
+    /// The smallest.
+    pub(crate) least: usize,
+    /// The largest.
+    pub(crate) most: usize,
 }
 
 /// A case, and what deserves to be said about it though it is not wrong.

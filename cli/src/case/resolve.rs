@@ -5,8 +5,8 @@ use super::error::{CaseError, Complaint};
 use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
 use super::reader::{ANY, Allowed, NOT_NEGATIVE, POSITIVE, Reader, Section};
 use super::{
-    CatalogueCase, CatalogueEntry, ContactCase, Groups, Law, LoadedCase, MeshCase, PathCase,
-    ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
+    CatalogueCase, CatalogueEntry, ContactCase, ElementRange, Groups, Law, LoadedCase, MeshCase,
+    PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
 };
 use crate::closest::closest;
 use crate::units::{self, Dimension};
@@ -40,7 +40,7 @@ const HOMES: &[(&str, &[&str])] = &[
 ];
 
 const GAS_EXPONENT: f64 = 1.07;
-const ELEMENTS: usize = 400;
+const ELEMENTS: ElementRange = ElementRange { default: 400, least: 8, most: 100_000 };
 const MAX_POINTS: usize = 5000;
 
 const POISSON: Allowed =
@@ -193,19 +193,24 @@ impl<'a> Resolver<'a> {
     fn entry(&mut self, entry: &CatalogueEntry) -> (Option<ProblemCase>, Option<PathCase>) {
         self.reader.only(self.root, &["name", "problem", "parameters", "mesh", "path"], HOMES);
         let section = self.reader.section(self.root, "parameters");
-        let allowed: Vec<&str> = entry.parameters.iter().map(|(name, _)| name.as_str()).collect();
-        self.reader.only(section, &allowed, &[("path", &[entry.parameter.as_str()])]);
+        let names: Vec<&str> = entry.parameters.iter().map(|one| one.name.as_str()).collect();
+        self.reader.only(section, &names, &[("path", &[entry.parameter.as_str()])]);
         let parameters = entry
             .parameters
             .iter()
-            .map(|(name, default)| Some((name.clone(), self.or(section, name, ANY, *default)?)))
+            .map(|one| {
+                Some((one.name.clone(), self.within(section, &one.name, one.allowed, one.default)?))
+            })
             .collect::<Option<_>>();
         let mesh = self.table("mesh", if entry.elements.is_some() { &["elements"] } else { &[] });
         let elements = match entry.elements {
             None => Some(None),
-            Some(default) => self.elements(mesh, default).map(Some),
+            Some(elements) => self.elements(mesh, elements).map(Some),
         };
-        let path = self.path(Some((entry.start, entry.end)), ANY, ANY);
+        let section = self.reader.section(self.root, "path");
+        let path = self
+            .path(Some((entry.start, entry.end)), ANY, ANY)
+            .filter(|path| self.admits(section, "start", entry.start_allowed, path.start));
         let problem = match (parameters, elements) {
             (Some(parameters), Some(elements)) => Some(ProblemCase::Catalogue(CatalogueCase {
                 name: entry.name.clone(),
@@ -373,10 +378,13 @@ impl<'a> Resolver<'a> {
         Some(MeshCase { elements: elements?, grading })
     }
 
-    fn elements(&self, section: Section<'_>, default: usize) -> Option<usize> {
+    fn elements(&self, section: Section<'_>, range: ElementRange) -> Option<usize> {
         match section.get("elements") {
-            None => Some(default),
-            Some(_) => self.reader.count(section, "elements", 8, 100_000),
+            None => Some(range.default),
+            Some(_) => {
+                let bound = |x: usize| i64::try_from(x).unwrap_or(i64::MAX);
+                self.reader.count(section, "elements", bound(range.least), bound(range.most))
+            }
         }
     }
 
@@ -417,6 +425,32 @@ impl<'a> Resolver<'a> {
             self.reader.refuse(section, "min_step", node, Complaint::OutOfRange { allowed });
         }
         Some(PathCase { start: start?, end: end?, max_step, min_step, max_points: max_points? })
+    }
+
+    /// A number in a range of the catalogue, with a default.
+    fn within(
+        &self,
+        section: Section<'_>,
+        key: &str,
+        allowed: problems::Allowed,
+        default: f64,
+    ) -> Option<f64> {
+        let value = self.or(section, key, ANY, default)?;
+        self.admits(section, key, allowed, value).then_some(value)
+    }
+
+    /// Whether the value of a key, if it is there, is in a range of the catalogue.
+    fn admits(
+        &self,
+        section: Section<'_>,
+        key: &str,
+        allowed: problems::Allowed,
+        value: f64,
+    ) -> bool {
+        let Some(node) = section.get(key).filter(|_| !allowed.holds(value)) else { return true };
+        let allowed = allowed.to_string();
+        self.reader.refuse(section, key, node, Complaint::OutOfRange { allowed });
+        false
     }
 
     /// A number with a default; `None` only when the number given is wrong.

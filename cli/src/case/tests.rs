@@ -2,6 +2,7 @@
 
 use super::source::load_text;
 use super::*;
+use problems::Allowed;
 use proptest::prelude::*;
 
 const GOOD: &str = r#"problem = "contact"
@@ -39,6 +40,10 @@ min_step = 1e-8
 max_points = 900
 "#;
 
+fn parameter(name: &str, default: f64, allowed: Allowed) -> CatalogueParameter {
+    CatalogueParameter { name: name.into(), default, allowed }
+}
+
 fn catalogue() -> Vec<CatalogueEntry> {
     vec![
         CatalogueEntry {
@@ -47,8 +52,9 @@ fn catalogue() -> Vec<CatalogueEntry> {
             parameter: "lambda".into(),
             start: 0.0,
             end: 1.0,
-            parameters: vec![("length".into(), 1.0)],
-            elements: Some(64),
+            start_allowed: Allowed::Any,
+            parameters: vec![parameter("length", 1.0, Allowed::Above(0.0))],
+            elements: Some(ElementRange { default: 64, least: 8, most: 1000 }),
         },
         CatalogueEntry {
             name: "cusp".into(),
@@ -56,7 +62,8 @@ fn catalogue() -> Vec<CatalogueEntry> {
             parameter: "mu".into(),
             start: -1.0,
             end: 1.0,
-            parameters: vec![("nu".into(), 0.5)],
+            start_allowed: Allowed::Within(-3.0, 3.0),
+            parameters: vec![parameter("nu", 0.5, Allowed::Any)],
             elements: None,
         },
     ]
@@ -402,6 +409,21 @@ fn catalogue_problems_resolve_by_name() {
     assert_eq!(load("fig12".as_ref(), &[], &[]).unwrap().case.name, "fig12");
     let message = load("brattu".as_ref(), &[], &catalogue()).unwrap_err().to_string();
     says(&message, &["brattu", "did you mean \"bratu\"", "fig12", "cusp"]);
+}
+
+#[test]
+fn catalogue_problems_name_what_they_refuse() {
+    let refused = |name: &str, set: &str| {
+        load(name.as_ref(), &[Override::set(set)], &catalogue()).unwrap_err().to_string()
+    };
+    for (name, set, parts) in [
+        ("bratu", "parameters.length=-1", ["parameters.length = -1", "must be positive"]),
+        ("bratu", "mesh.elements=1001", ["mesh.elements = 1001", "a whole number from 8 to 1000"]),
+        ("cusp", "path.start=4", ["path.start = 4", "must be from -3 to 3"]),
+        ("cusp", "path.start=1", ["path.start = 1", "different from path.end"]),
+    ] {
+        says(&refused(name, set), &parts);
+    }
 }
 
 #[test]

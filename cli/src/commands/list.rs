@@ -7,16 +7,18 @@ use std::fmt::Write as _;
 
 /// Print the names.
 pub(super) fn list() -> Exit {
+    let entries = catalogue();
+    let names = SHIPPED.iter().map(|(name, _)| *name).chain(entries.iter().map(|e| &*e.name));
+    let width = names.map(|name| name.len() + 2).max().unwrap_or(0);
     let mut out = String::from("cases\n");
     for (name, text) in SHIPPED {
-        let _ = writeln!(out, "  {name:<16}{}", summary(text));
+        let _ = writeln!(out, "  {name:<width$}{}", summary(text));
     }
-    let entries = catalogue();
     if !entries.is_empty() {
         out.push_str("problems\n");
     }
     for entry in entries {
-        let _ = writeln!(out, "  {:<16}{}", entry.name, entry.summary);
+        let _ = writeln!(out, "  {:<width$}{}", entry.name, entry.summary);
     }
     super::print(&out)
 }

@@ -1,11 +1,11 @@
 //! Problems of the catalogue.
 
 use super::{Observer, RunError, listen, settings};
-use crate::case::{CatalogueCase, CatalogueEntry, ResolvedCase};
+use crate::case::{CatalogueCase, CatalogueEntry, CatalogueParameter, ElementRange, ResolvedCase};
 use crate::output::Pictures;
 use crate::output::{EventRecord, Table, TraceResult};
 use crate::pictures::{Curve, Mark};
-use problems::{Entry, Request};
+use problems::{Constant, Entry, ProblemError, Request};
 use std::time::Instant;
 
 /// A problem of the catalogue, as case files know it.
@@ -16,8 +16,21 @@ pub(super) fn entry(entry: &Entry) -> CatalogueEntry {
         parameter: entry.parameter.to_owned(),
         start: entry.start,
         end: entry.end,
-        parameters: entry.parameters.iter().map(|(name, v)| ((*name).to_owned(), *v)).collect(),
-        elements: entry.elements,
+        start_allowed: entry.start_allowed,
+        parameters: entry.parameters.iter().map(parameter).collect(),
+        elements: entry.elements.map(|elements| ElementRange {
+            default: elements.default,
+            least: elements.least,
+            most: elements.most,
+        }),
+    }
+}
+
+fn parameter(constant: &Constant) -> CatalogueParameter {
+    CatalogueParameter {
+        name: constant.name.to_owned(),
+        default: constant.default,
+        allowed: constant.allowed,
     }
 }
 
@@ -27,27 +40,29 @@ pub(super) fn run(
     problem: &CatalogueCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
-    let found = problems::catalogue().iter().find(|entry| entry.name == problem.name);
-    let entry = found.ok_or_else(|| RunError::NotAvailable {
+    let entry = problems::find(&problem.name).ok_or_else(|| RunError::NotAvailable {
         case: case.name.clone(),
         problem: problem.name.clone(),
     })?;
-    let value =
-        |&(name, default): &(&str, f64)| problem.parameters.get(name).copied().unwrap_or(default);
+    let value = |constant: &Constant| {
+        problem.parameters.get(constant.name).copied().unwrap_or(constant.default)
+    };
     let request = Request {
         start: case.path.start,
         parameters: entry.parameters.iter().map(value).collect(),
-        elements: problem.elements.or(entry.elements).unwrap_or(0),
+        elements: problem.elements.unwrap_or(entry.request().elements),
         settings: settings(&case.path),
     };
     let clock = Instant::now();
-    let branch =
-        entry.trace(&request, &mut listen(observer)).map_err(|detail| RunError::NoStart {
+    let branch = entry.trace(&request, &mut listen(observer)).map_err(|error| match error {
+        ProblemError::Trace(detail) => RunError::NoStart {
             case: case.name.clone(),
             start: case.path.start,
             detail,
             remedy: "choose another start or other parameters",
-        })?;
+        },
+        error => RunError::Problem { case: case.name.clone(), error },
+    })?;
     let seconds = clock.elapsed().as_secs_f64();
 
     let names: Vec<&str> = branch.observables.iter().map(String::as_str).collect();

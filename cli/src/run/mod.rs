@@ -43,6 +43,14 @@ pub(crate) enum RunError {
         /// What it says.
         error: shell_contact::ParameterError,
     },
+    /// The problem of the catalogue refuses the case.
+    #[error("{case}: {error}")]
+    Problem {
+        /// Name of the case.
+        case: String,
+        /// What it says.
+        error: problems::ProblemError,
+    },
     /// Not even the first point could be computed.
     #[error("{case}: path.start = {start}: {detail}; {remedy}")]
     NoStart {
@@ -59,7 +67,7 @@ pub(crate) enum RunError {
 
 /// The problems of the catalogue, as the command line knows them.
 pub(crate) fn catalogue() -> Vec<CatalogueEntry> {
-    problems::catalogue().iter().map(general::entry).collect()
+    problems::catalogue().iter().copied().map(general::entry).collect()
 }
 
 /// Trace a case. The observer hears of every point and may stop the trace; what was computed until
