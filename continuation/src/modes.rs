@@ -7,7 +7,7 @@
 //! spectrum; others by shift-invert Arnoldi about zero, which proves nothing: an eigenvalue far from
 //! zero with a large imaginary part can be missed.
 
-use crate::linalg::{Lanczos, Matrix};
+use crate::linalg::{Arnoldi, Dense, Lanczos, Matrix};
 use crate::problem::{EvalError, Problem, Stability, check_finite};
 
 /// The most unstable eigenvalues of a state, with their modes.
@@ -57,6 +57,21 @@ pub fn modes<P: Problem>(
     Ok(Modes { values, vectors, certified })
 }
 
+/// Dimension up to which every matrix is treated as dense.
+const SMALL: usize = 40;
+
+fn dense<A: Matrix>(a: &A) -> Dense {
+    let n = a.dim();
+    let mut full = Dense::new(n);
+    let mut unit = vec![0.0; n];
+    for j in 0..n {
+        unit[j] = 1.0;
+        a.mul(&unit, full.column_mut(j));
+        unit[j] = 0.0;
+    }
+    full
+}
+
 /// Computes the most unstable eigenvalues from a factored Jacobian; storage is reused.
 pub(crate) struct ModeSolver<P: Problem> {
     wanted: usize,
@@ -86,7 +101,10 @@ impl<P: Problem> ModeSolver<P> {
 
     /// All eigenvalues, where a full spectrum is affordable.
     pub(crate) fn spectrum(&self, jacobian: &P::Jacobian) -> Option<Vec<(f64, f64)>> {
-        jacobian.spectrum(self.mass.as_ref())
+        jacobian.spectrum(self.mass.as_ref()).or_else(|| {
+            let small = jacobian.dim() <= SMALL;
+            small.then(|| dense(jacobian).spectrum(self.mass.as_ref().map(dense).as_ref()))?
+        })
     }
 
     /// The most unstable eigenvalues to `values`, most unstable first; whether that is certain.
@@ -104,13 +122,36 @@ impl<P: Problem> ModeSolver<P> {
         if let Some((negative, positive)) = inertia {
             return self.symmetric(problem, jacobian, negative, positive, values);
         }
-        if let Some(mut spectrum) = self.spectrum(jacobian) {
+        let spectrum = self.spectrum(jacobian);
+        let certain = spectrum.is_some();
+        self.pick(spectrum.unwrap_or_else(|| self.few(problem, jacobian, self.wanted)), values);
+        certain
+    }
+
+    /// The most unstable ones of a spectrum, or of a part of it.
+    pub(crate) fn pick(&self, mut spectrum: Vec<(f64, f64)>, values: &mut Vec<(f64, f64)>) {
+        if self.wanted > 0 {
             self.sort(&mut spectrum);
-            spectrum.truncate(self.wanted);
-            values.extend(spectrum);
-            return true;
+            values.extend(spectrum.into_iter().take(self.wanted));
         }
-        false
+    }
+
+    /// At least `count` eigenvalues nearest to zero, by iteration with the factors.
+    pub(crate) fn few(
+        &self,
+        problem: &P,
+        jacobian: &mut P::Jacobian,
+        count: usize,
+    ) -> Vec<(f64, f64)> {
+        let energy = self.sense == Stability::EnergyHessian;
+        let product = |x: &[f64], y: &mut [f64]| match &self.mass {
+            Some(mass) => mass.mul(x, y),
+            None if energy => problem.metric(x, y),
+            None => y.copy_from_slice(x),
+        };
+        let arnoldi = Arnoldi::new(problem.dim(), count.min(problem.dim()));
+        let found = arnoldi.nearest(0.0, product, |x| jacobian.solve(x), None);
+        found.pairs.iter().filter(|pair| pair.converged).map(|pair| pair.value).collect()
     }
 
     /// Sorts by instability.

@@ -254,6 +254,7 @@ impl Detector {
                 return Err(Refusal::Stability);
             }
             (false, false) if certain => change,
+            (false, false) if change == 2 && a.pairs == b.pairs => 2,
             _ => 0,
         };
         if kernel > 0 {

@@ -17,7 +17,6 @@ pub(crate) struct StabilityCount<P: Problem> {
     /// Number of eigenvalues that are reported at every point.
     wanted: usize,
     solver: ModeSolver<P>,
-    values: Vec<(f64, f64)>,
 }
 
 impl<P: Problem> StabilityCount<P> {
@@ -27,7 +26,6 @@ impl<P: Problem> StabilityCount<P> {
             multipliers: problem.multipliers(),
             wanted,
             solver: ModeSolver::new(problem, wanted),
-            values: Vec::new(),
         }
     }
 
@@ -55,9 +53,11 @@ impl<P: Problem> StabilityCount<P> {
         } else if let Some(spectrum) = self.solver.spectrum(jacobian) {
             self.read(&spectrum, energy, x);
             x.certified = true;
-            if self.wanted > 0 {
-                self.solver.solve(problem, jacobian, None, &mut x.eigenvalues);
-            }
+            self.solver.pick(spectrum, &mut x.eigenvalues);
+        } else if self.sense != Stability::None {
+            let few = self.solver.few(problem, jacobian, FEW.max(self.wanted));
+            self.read(&few, energy, x);
+            self.solver.pick(few, &mut x.eigenvalues);
         }
         if self.sense != Stability::None {
             let multipliers = if energy { self.multipliers } else { 0 };
