@@ -1,7 +1,7 @@
 //! Bordered systems over regular, nearly singular and singular cores.
 
 use continuation::linalg::{
-    Band, Bordered, BorderedFacts, Dense, MAX_GROWTH, Matrix, SymmetricBand,
+    Band, Bordered, BorderedFacts, Dense, MAX_GROWTH, Matrix, Sparse, SymmetricBand,
 };
 use faer::Mat;
 use proptest::prelude::*;
@@ -245,5 +245,89 @@ proptest! {
         case.solver.solve(&mut a, &mut f, &mut g);
         let e = backward_error(&case.mat, &[f, g].concat(), &rhs);
         prop_assert!(e < 1e-13, "{:e}", e);
+    }
+}
+
+/// `copies` equal symmetric bands, interleaved, whose eigenvalue of smallest magnitude is moved to
+/// `value(copy)`: a band of `copies` times the half-bandwidth that is singular so many times.
+fn interleaved(random: &mut Random, copies: usize, value: impl Fn(usize) -> f64) -> SymmetricBand {
+    let (n, kd) = (25, 2);
+    let mut a = random.symmetric_band(n, kd);
+    shift_smallest(&mut a, 0.0);
+    let mut out = SymmetricBand::new(n * copies, kd * copies);
+    for copy in 0..copies {
+        for j in 0..n {
+            for i in j..(j + kd + 1).min(n) {
+                let shift = if i == j { value(copy) } else { 0.0 };
+                out.add(i * copies + copy, j * copies + copy, a.get(i, j) + shift);
+            }
+        }
+    }
+    out
+}
+
+#[test]
+fn cores_of_every_type_singular_two_and_three_times() {
+    let mut random = Random(60);
+    let mut tested = 0;
+    for (copies, m) in [(1, 2), (2, 2), (1, 3), (2, 3), (3, 3)].into_iter().cycle().take(60) {
+        for noise in [0.0, 1e-16, 1e-15, 1e-13, 1e-10, 1e-6, 1.0] {
+            let factors = random.vector(copies);
+            let mut symmetric = interleaved(&mut random, copies, |k| noise * factors[k]);
+            let n = symmetric.dim();
+            let kd = symmetric.half_bandwidth();
+            let (mut band, mut dense) = (Band::new(n, kd, kd), Dense::new(n));
+            let mut entries = Vec::new();
+            for j in 0..n {
+                entries.extend((j.saturating_sub(kd)..(j + kd + 1).min(n)).map(|i| (i, j)));
+            }
+            let mut sparse = Sparse::new(n, &entries).unwrap();
+            for (i, j) in entries {
+                let value = symmetric.get(i, j);
+                band.set(i, j, value);
+                dense.set(i, j, value);
+                sparse.set(i, j, value).unwrap();
+            }
+            let same = random.next() > 0.0;
+            let mut case = Case::new(&symmetric, m, &mut random, same);
+            if condition(&case.mat) > 1e4 {
+                continue;
+            }
+            tested += 1;
+            let sign = det_sign(&case.mat);
+            for facts in [
+                case.check_solutions(&mut symmetric, &mut random),
+                case.check_solutions(&mut band, &mut random),
+                case.check_solutions(&mut dense, &mut random),
+                case.check_solutions(&mut sparse, &mut random),
+            ] {
+                assert!(
+                    facts.det_sign.is_none_or(|s| s == sign),
+                    "{copies} {m} {noise:e} {facts:?}"
+                );
+                assert!(copies > 1 || facts.det_sign.is_some());
+            }
+        }
+    }
+    assert!(tested > 200, "{tested} cases");
+}
+
+/// Newton's matrix at a Hopf point: `A − i ω` is singular once, its real form twice.
+#[test]
+fn real_form_of_a_complex_matrix_that_is_singular() {
+    let mut random = Random(61);
+    for off in [0.0, 1e-15, 1e-12, 1e-8] {
+        let n = 20;
+        let mut a = random.band(n, 2, 2);
+        let spectrum = to_dense(&to_mat(&a)).spectrum(None).unwrap();
+        let (re, im) = spectrum.into_iter().find(|z| z.1 > 0.0).unwrap();
+        a.add_identity(off - re);
+        let mut imaginary = Band::new(n, 2, 2);
+        imaginary.add_identity(-im);
+        let mut form = a.complex(&imaginary).unwrap();
+        let mut case = Case::new(&form, 2, &mut random, false);
+        case.check_solutions(&mut form, &mut random);
+        let dense = to_dense(&to_mat(&form));
+        case.check_solutions(&mut dense.clone(), &mut random);
     }
 }
