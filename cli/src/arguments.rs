@@ -46,6 +46,10 @@ pub(crate) struct CaseArguments {
     /// Number of elements, as --set mesh.elements=N
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) elements: Option<String>,
+    /// Number of eigenvalues to compute at every point, the most unstable ones, as
+    /// --set path.eigenvalues=K
+    #[arg(long, value_name = "K", allow_negative_numbers = true)]
+    pub(crate) eigenvalues: Option<String>,
     /// Replace a value of the case, e.g. --set dimensionless.adhesion=3e-3; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
@@ -55,7 +59,9 @@ impl CaseArguments {
     /// The overrides, in the order in which they are applied.
     pub(crate) fn overrides(&self) -> Vec<Override> {
         let set = self.set.iter().map(|text| Override::set(text));
-        set.chain(self.elements.iter().map(|count| Override::elements(count))).collect()
+        set.chain(self.elements.iter().map(|count| Override::elements(count)))
+            .chain(self.eigenvalues.iter().map(|count| Override::eigenvalues(count)))
+            .collect()
     }
 }
 

@@ -89,6 +89,11 @@ impl Override {
         Override { flag: "--elements", text: format!("mesh.elements={count}") }
     }
 
+    /// `--eigenvalues K`.
+    pub(crate) fn eigenvalues(count: &str) -> Self {
+        Override { flag: "--eigenvalues", text: format!("path.eigenvalues={count}") }
+    }
+
     fn error(&self, message: impl Into<String>) -> LoadError {
         LoadError::Override { flag: self.flag, text: shown(&self.text), message: message.into() }
     }

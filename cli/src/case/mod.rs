@@ -159,6 +159,8 @@ pub(crate) struct PathCase {
     pub(crate) min_step: Option<f64>,
     /// Largest number of points.
     pub(crate) max_points: usize,
+    /// Number of eigenvalues to compute at every point.
+    pub(crate) eigenvalues: usize,
 }
 
 /// What the command line needs to know about a problem of the catalogue.

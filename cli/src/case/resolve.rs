@@ -28,7 +28,7 @@ const PHYSICAL: &[&str] = &[
     "gas_exponent",
 ];
 const MESH: &[&str] = &["elements", "grading"];
-const PATH: &[&str] = &["start", "end", "max_step", "min_step", "max_points"];
+const PATH: &[&str] = &["start", "end", "max_step", "min_step", "max_points", "eigenvalues"];
 
 /// Where a key may be at home, for those that stand in the wrong table.
 const HOMES: &[(&str, &[&str])] = &[
@@ -407,6 +407,10 @@ impl<'a> Resolver<'a> {
             None => Some(MAX_POINTS),
             Some(_) => self.reader.count(section, "max_points", 2, 10_000_000),
         };
+        let eigenvalues = match section.get("eigenvalues") {
+            None => Some(0),
+            Some(_) => self.reader.count(section, "eigenvalues", 0, 200),
+        };
         if let (Some(start), Some(end), Some(node)) = (start, end, section.get("end"))
             && start == end
         {
@@ -424,7 +428,14 @@ impl<'a> Resolver<'a> {
             let allowed = format!("at most path.max_step, which is {high:?}");
             self.reader.refuse(section, "min_step", node, Complaint::OutOfRange { allowed });
         }
-        Some(PathCase { start: start?, end: end?, max_step, min_step, max_points: max_points? })
+        Some(PathCase {
+            start: start?,
+            end: end?,
+            max_step,
+            min_step,
+            max_points: max_points?,
+            eigenvalues: eigenvalues?,
+        })
     }
 
     /// A number in a range of the catalogue, with a default.

@@ -118,6 +118,9 @@ fn path(out: &mut Lines, path: &PathCase) {
         out.number("min_step", step);
     }
     out.count("max_points", path.max_points);
+    if path.eigenvalues > 0 {
+        out.count("eigenvalues", path.eigenvalues);
+    }
 }
 
 /// TOML, line by line.

@@ -30,6 +30,7 @@ impl Serialize for Document<'_> {
         map.serialize_entry("stopped_because", &result.stopped_because.to_string())?;
         map.serialize_entry("stopped_detail", &result.stopped_detail)?;
         map.serialize_entry("points", &result.points)?;
+        map.serialize_entry("certified", &result.certified)?;
         map.serialize_entry("newton_iterations", &result.newton_iterations)?;
         map.serialize_entry("seconds", &result.seconds)?;
         map.end()
@@ -55,6 +56,16 @@ impl Serialize for EventOf<'_> {
         map.serialize_entry("unstable_after", &event.unstable_after)?;
         map.serialize_entry("residual", &event.residual)?;
         map.serialize_entry("error_estimate", &event.error_estimate)?;
+        let form = &event.form;
+        entry(&mut map, "type", form.kind)?;
+        entry(&mut map, "criticality", form.criticality)?;
+        entry(&mut map, "multiplicity", form.multiplicity)?;
+        entry(&mut map, "branches", form.branches)?;
+        entry(&mut map, "curvature", form.curvature)?;
+        entry(&mut map, "frequency", form.frequency)?;
+        entry(&mut map, "lyapunov", form.lyapunov)?;
+        entry(&mut map, "lyapunov_error", form.lyapunov_error)?;
+        entry(&mut map, "certified", form.certified)?;
         if !event.observables.is_empty() {
             map.serialize_entry("observables", &Named(&event.observables))?;
         }
@@ -67,5 +78,17 @@ struct Named<'a>(&'a [(String, f64)]);
 impl Serialize for Named<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}
+
+/// Writes an entry that may not apply.
+fn entry<M: SerializeMap, V: Serialize>(
+    map: &mut M,
+    key: &str,
+    value: Option<V>,
+) -> Result<(), M::Error> {
+    match value {
+        Some(value) => map.serialize_entry(key, &value),
+        None => Ok(()),
     }
 }

@@ -12,7 +12,7 @@ pub(crate) mod tests;
 
 pub(crate) use events::events_json;
 pub(crate) use folder::Folder;
-pub(crate) use result::{ContactRow, EventRecord, Table};
+pub(crate) use result::{Cell, ContactRow, EventRecord, FormRecord, Table};
 pub(crate) use result::{Pictures, TraceResult};
 pub(crate) use summary::summary;
 pub(crate) use table::branch_csv;

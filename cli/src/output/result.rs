@@ -73,6 +73,12 @@ impl Table {
         Self::with_columns(&columns)
     }
 
+    /// The same with further columns at the end.
+    pub(crate) fn and(mut self, columns: Vec<String>) -> Self {
+        self.columns.extend(columns);
+        self
+    }
+
     /// Add a row; a short one is filled up with empty cells, what is too long is cut.
     pub(crate) fn push(&mut self, mut row: Vec<Cell>) {
         row.resize(self.columns.len(), Cell::Empty);
@@ -194,6 +200,32 @@ pub(crate) struct EventRecord {
     pub(crate) error_estimate: Option<f64>,
     /// Further observables by name, for problems whose observables are not the ones above.
     pub(crate) observables: Vec<(String, f64)>,
+    /// What the normal form says.
+    pub(crate) form: FormRecord,
+}
+
+/// The normal form of a special point; what does not apply is `None`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct FormRecord {
+    /// `transcritical`, `pitchfork`, `multiple` or `degenerate` of a branch point; `supercritical`
+    /// or `subcritical` of a Hopf point.
+    pub(crate) kind: Option<&'static str>,
+    /// `supercritical` or `subcritical`.
+    pub(crate) criticality: Option<&'static str>,
+    /// Number of modes that become critical at a branch point.
+    pub(crate) multiplicity: Option<usize>,
+    /// Number of other branches through it.
+    pub(crate) branches: Option<usize>,
+    /// Second derivative of the parameter by the arclength, at a fold or along a pitchfork.
+    pub(crate) curvature: Option<f64>,
+    /// Imaginary part of the critical eigenvalues of a Hopf point.
+    pub(crate) frequency: Option<f64>,
+    /// Its first Lyapunov coefficient.
+    pub(crate) lyapunov: Option<f64>,
+    /// Estimated error of that.
+    pub(crate) lyapunov_error: Option<f64>,
+    /// Whether the numbers of unstable modes are certain.
+    pub(crate) certified: Option<bool>,
 }
 
 /// Everything a trace hands over.
@@ -213,6 +245,8 @@ pub(crate) struct TraceResult {
     pub(crate) stopped_detail: String,
     /// Number of points.
     pub(crate) points: usize,
+    /// Whether all numbers of unstable modes are certain.
+    pub(crate) certified: Option<bool>,
     /// Jacobian assemblies.
     pub(crate) newton_iterations: usize,
     /// From the resolved case to the last point and event.

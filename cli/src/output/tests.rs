@@ -41,6 +41,7 @@ pub(crate) fn example() -> TraceResult {
         stopped_because: StopReason::Target,
         stopped_detail: String::new(),
         points: 2,
+        certified: Some(true),
         newton_iterations: 17,
         seconds: 0.25,
         pictures: Pictures::default(),

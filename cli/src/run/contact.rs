@@ -1,5 +1,6 @@
 //! The contact problem: a shell between two plates.
 
+use super::form::{StabilityColumns, certified, form};
 use super::{Observer, RunError, listen, settings};
 use crate::case::{ContactCase, Law, ResolvedCase};
 use crate::output::{ContactRow, EventRecord, Pictures, Table, TraceResult};
@@ -45,6 +46,7 @@ pub(super) fn run(
         stopped_because: branch.stopped.reason,
         stopped_detail: branch.stopped.detail.clone(),
         points: branch.points.len(),
+        certified: certified(branch),
         newton_iterations: branch.statistics.newton_iterations,
         seconds,
         pictures: pictures(&case.name, &problem, &traced),
@@ -103,9 +105,12 @@ fn row(traced: &ContactBranch, index: usize, point: &Point) -> ContactRow {
 
 fn tabulate(traced: &ContactBranch) -> (Table, Vec<EventRecord>) {
     let branch = &traced.branch;
-    let mut table = Table::contact();
+    let stability = StabilityColumns::of(branch);
+    let mut table = Table::contact().and(stability.titles());
     for (index, point) in branch.points.iter().enumerate() {
-        table.push(row(traced, index, point).cells());
+        let mut cells = row(traced, index, point).cells();
+        cells.extend(stability.cells(point));
+        table.push(cells);
     }
     let events = branch.events.iter().map(|event| {
         let at = row(traced, event.point, &branch.points[event.point]);
@@ -120,6 +125,7 @@ fn tabulate(traced: &ContactBranch) -> (Table, Vec<EventRecord>) {
             residual: Some(event.residual),
             error_estimate: Some(event.error_estimate),
             observables: Vec::new(),
+            form: form(branch, event),
         }
     });
     let events = events.collect();

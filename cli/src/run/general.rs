@@ -1,5 +1,6 @@
 //! Problems of the catalogue.
 
+use super::form::{StabilityColumns, certified, form};
 use super::{Observer, RunError, listen, settings};
 use crate::case::{CatalogueCase, CatalogueEntry, CatalogueParameter, ElementRange, ResolvedCase};
 use crate::output::Pictures;
@@ -66,12 +67,14 @@ pub(super) fn run(
     let seconds = clock.elapsed().as_secs_f64();
 
     let names: Vec<&str> = branch.observables.iter().map(String::as_str).collect();
-    let mut table = Table::general(&branch.parameter, &names);
+    let stability = StabilityColumns::of(&branch);
+    let mut table = Table::general(&branch.parameter, &names).and(stability.titles());
     for (index, point) in branch.points.iter().enumerate() {
         let kind = point.event.map(|e| branch.events[e].kind.to_string()).unwrap_or_default();
         let mut row = vec![index.into(), point.p.into()];
         row.extend(point.observables.iter().map(|&v| v.into()));
         row.extend([point.unstable.into(), kind.as_str().into()]);
+        row.extend(stability.cells(point));
         table.push(row);
     }
     let mut curve =
@@ -93,6 +96,7 @@ pub(super) fn run(
             residual: Some(event.residual),
             error_estimate: Some(event.error_estimate),
             observables: named.collect(),
+            form: form(&branch, event),
             ..EventRecord::default()
         });
         curve.marks.push(Mark {
@@ -112,8 +116,9 @@ pub(super) fn run(
         table,
         events,
         stopped_because: branch.stopped.reason,
-        stopped_detail: branch.stopped.detail,
+        stopped_detail: branch.stopped.detail.clone(),
         points: branch.points.len(),
+        certified: certified(&branch),
         newton_iterations: branch.statistics.newton_iterations,
         seconds,
         pictures,

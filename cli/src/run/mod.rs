@@ -2,6 +2,7 @@
 //! out.
 
 mod contact;
+mod form;
 mod general;
 
 use crate::case::{CatalogueEntry, PathCase, ProblemCase, ResolvedCase};
@@ -96,6 +97,7 @@ fn settings(path: &PathCase) -> Settings {
         max_step: path.max_step,
         min_step: path.min_step,
         max_points: path.max_points,
+        eigenvalues: path.eigenvalues,
         ..Settings::default()
     }
 }
