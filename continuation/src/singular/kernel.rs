@@ -61,8 +61,9 @@ pub(crate) struct Singular {
     pub(crate) amplitude: Vec<f64>,
     /// The last correction, in natural amplitudes.
     pub(crate) correction: f64,
-    /// Size of the gap, in natural amplitudes, by which an imperfect branch point is unfolded; 0
-    /// where rounding explains it.
+    /// Length of the residual that remains: by how much an imperfect branch point is unfolded.
+    pub(crate) unfolding: f64,
+    /// Size of the gap, in natural amplitudes, that this makes between the branches.
     pub(crate) gap: f64,
     /// The bordered system at the point, for further solves.
     pub(crate) frame: Frame,
@@ -249,13 +250,9 @@ fn finish<P: Problem>(
         return Err(Failure::Apart(local.apart(&z)));
     }
     let unfolding = super::max_abs(beta);
-    let terms = probe.jacobian.norm() * super::max_abs(&z.u)
-        + super::max_abs(&probe.by_parameter) * z.p.abs();
-    let rounding = 32.0 * f64::EPSILON * terms * (z.u.len() as f64).sqrt();
-    let real = curved > 0.0 && unfolding > rounding;
-    let gap = if real { (unfolding / curved).sqrt() } else { 0.0 };
+    let gap = if curved > 0.0 { (unfolding / curved).sqrt() } else { 0.0 };
     let Local { right, left, form, .. } = local;
-    Ok(Singular { z, right, left, form, amplitude, correction, gap, frame })
+    Ok(Singular { z, right, left, form, amplitude, correction, unfolding, gap, frame })
 }
 
 /// Vectors, defect and quadratic form at an assembled and factored point.

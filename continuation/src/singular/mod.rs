@@ -171,7 +171,10 @@ fn attempt<P: Problem>(
         }
     }
     core.place(x, &found.z, &analysed.traced).map_err(Failure::Evaluation)?;
-    let error = found.correction.max(found.gap).max(f64::EPSILON);
+    // a residual no larger than that of a converged state says nothing of a gap
+    let noise = 8.0 * (a.u.len() as f64).sqrt() * core.residual(a).map_err(Failure::Evaluation)?;
+    let gap = if found.unfolding > noise { found.gap } else { 0.0 };
+    let error = found.correction.max(gap).max(f64::EPSILON);
     Ok(Crossed { at, error, crossing: analysed.crossing, state: x.clone() })
 }
 
