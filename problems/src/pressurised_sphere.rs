@@ -301,7 +301,7 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "pressurised-sphere",
     summary: "a sphere under external pressure: buckling at 1.0193 and 1.0544 times 4 sqrt(bending)",
     parameter: "pressure",
-    start: 0.05,
+    start: 0.0,
     start_allowed: Allowed::AtLeast(0.0),
     end: 0.136,
     parameters: &[
