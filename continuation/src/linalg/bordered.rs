@@ -15,6 +15,14 @@ const BORDER_FLOOR: f64 = 1e-40;
 /// is singular to working precision, the core then at least twice.
 const SINGULAR: f64 = 1e11;
 
+/// A Schur complement larger than usual by this factor has cured a singular core.
+const CURE: f64 = 1e4;
+
+/// Floor, in roundings, of the last Schur complement of a matrix that is a core itself: well above
+/// the error of the residual by which mixed elimination corrects the border's unknown, so that the
+/// sign of the solutions is that of the factors.
+const NOISE: f64 = 64.0;
+
 /// What the factorisation of a bordered matrix learned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BorderedFacts {
@@ -114,6 +122,47 @@ impl Bordered {
 
     /// Factors the core and prepares the borders. To be repeated when either changes.
     pub fn factor<A: Matrix>(&mut self, a: &mut A) -> BorderedFacts {
+        let (mut facts, last_replaced) = self.factor_parts(a, 0.0, 1.0);
+        if last_replaced {
+            (facts.det_sign, facts.inertia) = (None, None);
+        }
+        facts
+    }
+
+    /// Factors for use as a core: the facts are those of the factors, also where the last Schur
+    /// complement vanishes. `floor` is that of a core which is zero, as are its borders.
+    pub(super) fn factor_as_core<A: Matrix>(&mut self, a: &mut A, floor: f64) -> Facts {
+        let (facts, _) = self.factor_parts(a, floor, NOISE);
+        let mut cured = 0;
+        for k in 0..self.m {
+            let borders = max_abs(self.column(k)) * max_abs(self.row(k));
+            let borders = if self.core_norm > 0.0 { borders / self.core_norm } else { 1.0 };
+            let usual = self.corner(k, k, false).abs() + borders;
+            cured += usize::from(self.delta[k].abs() > CURE * usual);
+        }
+        let mut perturbed = facts.perturbed + facts.core.perturbed.saturating_sub(cured);
+        if let (Some(delta), Some(other)) = (self.delta.last(), self.delta_transposed.last_mut()) {
+            // equal but for rounding; where they are nothing else, the sign must be the same
+            if (*delta - *other).abs() > 0.5 * delta.abs() {
+                *other = *delta;
+                perturbed = perturbed.max(1);
+            }
+        }
+        Facts {
+            det_sign: facts.det_sign,
+            inertia: facts.inertia,
+            growth: facts.core.growth,
+            perturbed,
+        }
+    }
+
+    /// Also returns whether the last Schur complement vanished and was replaced.
+    fn factor_parts<A: Matrix>(
+        &mut self,
+        a: &mut A,
+        zero_floor: f64,
+        last_noise: f64,
+    ) -> (BorderedFacts, bool) {
         let (n, m) = (self.n, self.m);
         self.core_norm = a.norm();
         let mut floor = f64::EPSILON * self.core_norm;
@@ -122,7 +171,8 @@ impl Bordered {
             let part = if self.core_norm > 0.0 { BORDER_FLOOR } else { f64::EPSILON };
             floor = floor.max(part * size);
         }
-        let core = a.factor(floor);
+        let core = a.factor(if floor > 0.0 { floor } else { zero_floor });
+        let mut last_replaced = false;
         let mut facts = BorderedFacts {
             core,
             schur: 1.0,
@@ -142,7 +192,8 @@ impl Bordered {
                 self.eliminate(a, k, &mut z, &mut y, transposed);
                 let solution = if transposed { &mut self.v } else { &mut self.w };
                 solution[k * (n + m)..][..n + k].copy_from_slice(&z[..n + k]);
-                let (delta, replaced) = self.schur(k, &z, transposed);
+                let noise = if k + 1 == m { last_noise } else { 1.0 };
+                let (delta, replaced) = self.schur(k, &z, transposed, noise);
                 if transposed {
                     self.delta_transposed[k] = delta;
                 } else {
@@ -151,7 +202,7 @@ impl Bordered {
                     facts.schur = delta;
                     let growth = self.core_norm * max_abs(&z[..n]);
                     unknown |= k > 0 && growth > SINGULAR * max_abs(self.column(k));
-                    unknown |= replaced && k + 1 == m;
+                    last_replaced = replaced;
                     facts.inertia = facts.inertia.map(|(negative, positive)| {
                         if delta < 0.0 {
                             (negative + 1, positive)
@@ -167,17 +218,17 @@ impl Bordered {
         let signs = self.delta.iter().fold(1, |s, delta| s * sign(*delta));
         facts.det_sign = facts.det_sign.filter(|_| !unknown).map(|s| s * signs);
         facts.inertia = facts.inertia.filter(|_| !unknown);
-        facts
+        (facts, last_replaced)
     }
 
     /// Solves in place: `f` becomes `x`, `g` becomes `y`. Refined once if the residual asks for it.
     pub fn solve<A: Matrix>(&mut self, a: &mut A, f: &mut [f64], g: &mut [f64]) {
-        self.solve_with(a, f, g, false);
+        self.solve_with(a, f, g, false, true);
     }
 
     /// Solves with the transposed bordered matrix, `[Aᵀ C; Bᵀ Dᵀ] [x; y] = [f; g]`.
     pub fn solve_transpose<A: Matrix>(&mut self, a: &mut A, f: &mut [f64], g: &mut [f64]) {
-        self.solve_with(a, f, g, true);
+        self.solve_with(a, f, g, true, true);
     }
 
     /// Largest entry of the core that was factored last.
@@ -186,17 +237,27 @@ impl Bordered {
     }
 
     /// Column `k` of `B`.
-    pub(crate) fn column(&self, k: usize) -> &[f64] {
+    pub fn column(&self, k: usize) -> &[f64] {
         &self.b[k * self.n..(k + 1) * self.n]
     }
 
-    fn row(&self, k: usize) -> &[f64] {
+    /// Column `k` of `C`, row `k` of the lower border.
+    pub fn row(&self, k: usize) -> &[f64] {
         &self.c[k * self.n..(k + 1) * self.n]
     }
 
     /// Entry `(i, k)` of `D`, or of its transpose.
-    fn corner(&self, i: usize, k: usize, transposed: bool) -> f64 {
+    pub(super) fn corner(&self, i: usize, k: usize, transposed: bool) -> f64 {
         if transposed { self.d[k + i * self.m] } else { self.d[i + k * self.m] }
+    }
+
+    /// All entries of the borders: those of `B`, `C` and `D`, each by columns.
+    pub(super) fn entries(&self) -> [&[f64]; 3] {
+        [&self.b, &self.c, &self.d]
+    }
+
+    pub(super) fn entries_mut(&mut self) -> [&mut [f64]; 3] {
+        [&mut self.b, &mut self.c, &mut self.d]
     }
 
     fn is_symmetric(&self) -> bool {
@@ -205,8 +266,9 @@ impl Bordered {
                 .all(|k| (0..k).all(|i| self.corner(i, k, false) == self.corner(k, i, false)))
     }
 
-    /// `d − cᵀz` of border `k` over the core with the first `k` borders, not smaller than rounding.
-    fn schur(&self, k: usize, z: &[f64], transposed: bool) -> (f64, bool) {
+    /// `d − cᵀz` of border `k` over the core with the first `k` borders, not smaller than `noise`
+    /// times the rounding of a term.
+    fn schur(&self, k: usize, z: &[f64], transposed: bool, noise: f64) -> (f64, bool) {
         let row = if transposed { self.column(k) } else { self.row(k) };
         let x = &z[..self.n];
         let d = self.corner(k, k, transposed);
@@ -217,7 +279,7 @@ impl Bordered {
             value -= term;
             scale += term.abs();
         }
-        pivot_or_floor(value, if scale > 0.0 { f64::EPSILON * scale } else { 1.0 })
+        pivot_or_floor(value, if scale > 0.0 { noise * f64::EPSILON * scale } else { 1.0 })
     }
 
     /// Solves with the core and the first `borders` borders; `z` holds `n + borders` unknowns.
@@ -306,7 +368,14 @@ impl Bordered {
         small && max_abs(r) <= ROUNDING * scale
     }
 
-    fn solve_with<A: Matrix>(&mut self, a: &mut A, f: &mut [f64], g: &mut [f64], transposed: bool) {
+    pub(super) fn solve_with<A: Matrix>(
+        &mut self,
+        a: &mut A,
+        f: &mut [f64],
+        g: &mut [f64],
+        transposed: bool,
+        refine: bool,
+    ) {
         let n = self.n;
         let mut rhs = std::mem::take(&mut self.rhs);
         let mut z = std::mem::take(&mut self.trial);
@@ -316,7 +385,7 @@ impl Bordered {
         rhs[n..].copy_from_slice(g);
         z.copy_from_slice(&rhs);
         self.eliminate(a, self.m, &mut z, &mut y, transposed);
-        if !self.residual(a, &z, &rhs, &mut residual, transposed) {
+        if refine && !self.residual(a, &z, &rhs, &mut residual, transposed) {
             self.eliminate(a, self.m, &mut residual, &mut y, transposed);
             // A correction as large as the solution, in both parts, is noise of a singular matrix.
             let (dx, dy) = residual.split_at(n);

@@ -2,9 +2,10 @@
 //!
 //! A [`Matrix`] keeps its entries and its factors in storage allocated once:
 //! [`SymmetricBand`] (`L D Lᵀ`, inertia, a rank-one term), [`Band`] (LU with partial pivoting),
-//! [`Dense`] (the same, and the full spectrum) and [`Sparse`] (the same in a fill-reducing order). [`Bordered`] solves `[A B; Cᵀ D] [x; y] = [f; g]`
-//! with one factorisation of the core `A`, accurately also where `A` is singular, as it is at
-//! folds and branch points. [`Lanczos`] and [`Arnoldi`] find a few
+//! [`Dense`] (the same, and the full spectrum), [`Sparse`] (the same in a fill-reducing order) and
+//! [`Arrow`] (any of them with a few full rows and columns). [`Bordered`] solves
+//! `[A B; Cᵀ D] [x; y] = [f; g]` with one factorisation of the core `A`, accurately also where `A`
+//! is singular, as it is at folds and branch points. [`Lanczos`] and [`Arnoldi`] find a few
 //! eigenvalues of large pencils, symmetric or not, from solves.
 //!
 //! Pivots below a floor are replaced by it, and the factors then are those of a matrix within the
@@ -24,6 +25,7 @@
 //! - G. H. Golub and C. F. Van Loan, *Matrix Computations*, 4th ed., Johns Hopkins, 2013.
 
 mod arnoldi;
+mod arrow;
 mod band;
 mod bordered;
 mod dense;
@@ -40,6 +42,7 @@ mod vector;
 pub(crate) use vector::max_abs;
 
 pub use arnoldi::{Arnoldi, Eigenpair, Eigenpairs};
+pub use arrow::Arrow;
 pub use band::Band;
 pub use bordered::{Bordered, BorderedFacts};
 pub use dense::{Dense, MAX_SPECTRUM};

@@ -9,13 +9,13 @@ use proptest::prelude::*;
 use crate::support::*;
 
 /// The bordered matrix with random or given borders, dense.
-struct Case {
+pub(crate) struct Case {
     solver: Bordered,
-    mat: Mat<f64>,
+    pub(crate) mat: Mat<f64>,
 }
 
 impl Case {
-    fn new(a: &impl Matrix, m: usize, random: &mut Random, symmetric: bool) -> Self {
+    pub(crate) fn new(a: &impl Matrix, m: usize, random: &mut Random, symmetric: bool) -> Self {
         let n = a.dim();
         let core = to_mat(a);
         let mut solver = Bordered::new(n, m);
@@ -42,7 +42,7 @@ impl Case {
     }
 
     /// Solves both ways; forward errors relative to dense solves, at most 1e-11.
-    fn check(&mut self, a: &mut impl Matrix, random: &mut Random) -> BorderedFacts {
+    pub(crate) fn check(&mut self, a: &mut impl Matrix, random: &mut Random) -> BorderedFacts {
         let facts = self.check_solutions(a, random);
         assert_eq!(facts.det_sign, Some(det_sign(&self.mat)), "{facts:?}");
         facts

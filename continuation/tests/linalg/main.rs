@@ -3,6 +3,7 @@
 
 mod arch;
 mod arnoldi;
+mod arrow;
 mod bordered;
 mod lanczos;
 mod matrices;
