@@ -269,7 +269,9 @@ fn mass_without_multipliers() {
 
 #[test]
 fn nothing_to_find() {
+    fn is_send(_: &impl Send) {}
     let mut l = Lanczos::new(5, 3);
+    is_send(&l);
     let report = l.nearest(0.0, |_, y| y.fill(0.0), |_| {}, None);
     assert!(report.complete && l.values().is_empty(), "{report:?}");
     let identity = |x: &[f64], y: &mut [f64]| y.copy_from_slice(x);
