@@ -165,7 +165,7 @@ impl Arnoldi {
 
 /// From the eigenvalues `θ` of the operator to those of the pencil, `σ + 1/θ`.
 fn collect(found: Dominant, shift: c64, wanted: usize) -> Eigenpairs {
-    let pairs: Vec<Eigenpair> = found
+    let mut pairs: Vec<Eigenpair> = found
         .ritz
         .into_iter()
         .map(|ritz| {
@@ -180,6 +180,13 @@ fn collect(found: Dominant, shift: c64, wanted: usize) -> Eigenpairs {
             }
         })
         .collect();
+    // inversion exchanges the half planes
+    for i in 1..pairs.len() {
+        let ((p, q), (r, s)) = (pairs[i - 1].value, pairs[i].value);
+        if shift.im == 0.0 && p == r && q == -s && q < 0.0 {
+            pairs.swap(i - 1, i);
+        }
+    }
     let report = EigenReport {
         solves: found.applications,
         wanted: wanted.max(pairs.len()),

@@ -3,15 +3,18 @@
 use faer::{Mat, c64};
 
 use super::eigen::{EigenSettings, Noise};
-use super::scalar::{Scalar, SmallEigen, norm};
+use super::scalar::{Scalar, eigen, norm};
 
 /// Least number of steps from a random vector after which a search for copies may end.
-const PROBE: usize = 6;
+const PROBE: usize = 10;
 /// Increase of the score from which on a search has found something.
 const FOUND: f64 = 1e-6;
-/// Excess of the tolerance that is allowed to vectors once they have met it: residuals mix when
-/// copies are found.
-const SLACK: f64 = 10.0;
+/// Part of the residual that is due to vectors given up counts this many times less: each is
+/// below the tolerance when it is given up, but they mix as copies are found.
+const SLACK: f64 = 30.0;
+/// Residual of an unwanted eigenvalue, relative to its distance from the wanted ones, at which a
+/// search ends.
+const MARGIN: f64 = 0.02;
 /// Passes of Gram-Schmidt after which a vector counts as dependent.
 const PASSES: usize = 4;
 /// Basis vectors beyond the wanted ones.
@@ -19,8 +22,11 @@ const ROOM: usize = 24;
 /// An eigenvalue of the operator below this part of the largest is zero: an infinite eigenvalue
 /// of the pencil.
 const INFINITE: f64 = 1e-14;
-/// Part of a vector that must be new for it to enter a basis of eigenvectors.
-const DEPENDENT: f64 = 1e-10;
+/// Part of an eigenvector that must be new for it to enter a basis; below it rounding would spoil
+/// the space.
+const DEPENDENT: f64 = 1e-5;
+/// Distance of conjugates from each other's mirror image, relative to their imaginary part.
+const CONJUGATE: f64 = 0.1;
 
 /// An eigenvector of the operator, of length one.
 pub(super) struct Ritz {
@@ -95,7 +101,9 @@ struct Krylov<'a, T, F> {
 struct Look {
     theta: Vec<c64>,
     vectors: Mat<c64>,
-    residual: Vec<f64>,
+    /// Residual along the next vector, and a bound of that along the vectors given up.
+    next: Vec<f64>,
+    lost: Vec<f64>,
     wanted: usize,
     converged: usize,
 }
@@ -127,9 +135,7 @@ impl<T: Scalar, F: FnMut(&mut [T])> Krylov<'_, T, F> {
                 continue;
             }
             check = self.m + 3;
-            let Some(look) = self.look(if probe.is_some() { SLACK } else { 1.0 }) else {
-                return false;
-            };
+            let Some(look) = self.look() else { return false };
             if self.m == self.n {
                 return true;
             }
@@ -137,10 +143,10 @@ impl<T: Scalar, F: FnMut(&mut [T])> Krylov<'_, T, F> {
             if done && !self.settings.complete {
                 return false; // not searched
             }
-            let now = look.score();
+            let now = look.score(self.k);
             if done && let Some(first) = probe {
                 let quiet = now <= score + FOUND && self.m >= first + PROBE;
-                if quiet && self.settled(first, &look) {
+                if quiet && look.settled(self.settings.tolerance) {
                     return true;
                 }
             }
@@ -224,57 +230,50 @@ impl<T: Scalar, F: FnMut(&mut [T])> Krylov<'_, T, F> {
         self.m < self.n && self.append(w, false).is_some()
     }
 
-    /// Eigenvalues of the projected operator from basis vector `first` on.
-    fn eigen(&self, first: usize) -> Option<SmallEigen> {
-        let ld = self.capacity + 1;
-        T::eigen(self.m - first, |i, j| self.h[first + i + (first + j) * ld])
-    }
-
-    fn look(&self, slack: f64) -> Option<Look> {
+    fn look(&self) -> Option<Look> {
         let m = self.m;
-        let (values, vectors) = self.eigen(0)?;
-        let mut ranking: Vec<usize> = (0..m).filter(|&i| !T::REAL || values[i].im >= 0.0).collect();
-        ranking.sort_by(|&i, &j| values[j].norm().total_cmp(&values[i].norm()));
-        // conjugates side by side
+        let ld = self.capacity + 1;
+        let (values, vectors) = eigen(m, |i, j| self.h[i + j * ld].complex())?;
+        let mut rest: Vec<usize> = (0..m).collect();
+        rest.sort_by(|&i, &j| values[j].norm().total_cmp(&values[i].norm()));
         let mut theta = Vec::with_capacity(m);
         let mut sorted = Mat::zeros(m, m);
-        for i in ranking {
-            let both = T::REAL && values[i].im > 0.0;
-            for conjugate in [false, true].into_iter().take(1 + usize::from(both)) {
-                let turn = |z: c64| if conjugate { z.conj() } else { z };
-                let at = theta.len();
-                (at < m).then(|| (0..m).for_each(|k| sorted[(k, at)] = turn(vectors[(k, i)])))?;
-                theta.push(turn(values[i]));
+        let mut add = |value: c64, i: usize, conjugate: bool| {
+            let turn = |z: c64| if conjugate { z.conj() } else { z };
+            (0..m).for_each(|k| sorted[(k, theta.len())] = turn(vectors[(k, i)]));
+            theta.push(value);
+        };
+        while !rest.is_empty() {
+            let i = rest.remove(0);
+            let value = values[i];
+            let mirror = |j: usize| (values[j] - value.conj()).norm();
+            let partner = (0..rest.len()).min_by(|&a, &b| {
+                mirror(rest[a]).total_cmp(&mirror(rest[b])) // conjugates side by side
+            });
+            match partner {
+                _ if !T::REAL => add(value, i, false),
+                Some(at) if mirror(rest[at]) <= CONJUGATE * value.im.abs() => {
+                    let mean = 0.5 * (value + values[rest.remove(at)].conj());
+                    let upper = mean.im > 0.0;
+                    let mean = if upper { mean } else { mean.conj() };
+                    add(mean, i, !upper);
+                    add(mean.conj(), i, upper);
+                }
+                _ => add(c64::new(value.re, 0.0), i, false),
             }
         }
         let vectors = sorted;
-        let residual = (0..m)
-            .map(|j| {
-                let lost = |row: &Vec<T>| -> f64 {
-                    let terms = row.iter().enumerate().map(|(i, b)| b.complex() * vectors[(i, j)]);
-                    terms.sum::<c64>().norm()
-                };
-                self.lost.iter().map(lost).sum::<f64>() + self.beta * vectors[(m - 1, j)].norm()
-            })
-            .collect();
-        let mut look = Look { theta, vectors, residual, wanted: 0, converged: 0 };
+        let next = (0..m).map(|j| self.beta * vectors[(m - 1, j)].norm()).collect();
+        let part = |row: &Vec<T>, j: usize| -> f64 {
+            let terms = row.iter().enumerate().map(|(i, b)| b.complex() * vectors[(i, j)]);
+            terms.sum::<c64>().norm()
+        };
+        let lost = (0..m).map(|j| self.lost.iter().map(|row| part(row, j)).sum()).collect();
+        let mut look = Look { theta, vectors, next, lost, wanted: 0, converged: 0 };
         look.wanted = look.whole_pairs::<T>(self.k.min(m));
-        let tolerance = slack * self.settings.tolerance;
+        let tolerance = self.settings.tolerance;
         look.converged = (0..look.wanted).filter(|&i| look.is_converged(i, tolerance)).count();
         Some(look)
-    }
-
-    /// Whether the basis from vector `first` on, taken alone, has seen the largest eigenvalue it
-    /// can see, and that is not a wanted one.
-    fn settled(&self, first: usize, look: &Look) -> bool {
-        let Some((values, vectors)) = self.eigen(first) else { return false };
-        let least = look.theta[look.wanted - 1].norm();
-        let last = self.m - first - 1;
-        let top = (0..values.len()).max_by(|&i, &j| values[i].norm().total_cmp(&values[j].norm()));
-        top.is_some_and(|i| {
-            let residual = self.beta * vectors[(last, i)].norm();
-            residual <= 0.5 * (least - values[i].norm())
-        })
     }
 
     /// Replaces the basis by one of the space of the first `keep` eigenvectors. The next vector
@@ -288,8 +287,9 @@ impl<T: Scalar, F: FnMut(&mut [T])> Krylov<'_, T, F> {
                 continue; // its conjugate gave both parts
             }
             let s: Vec<c64> = (0..m).map(|i| look.vectors[(i, j)]).collect();
+            // of a real eigenvalue one part is enough: the other is noise or another copy
+            let most = q.len() + if T::REAL && look.theta[j].im == 0.0 { 1 } else { 2 };
             T::parts(&s, |mut part| {
-                let before = norm(&part);
                 for _ in 0..2 {
                     for q in &q {
                         let h = T::dot(q, &part);
@@ -297,7 +297,7 @@ impl<T: Scalar, F: FnMut(&mut [T])> Krylov<'_, T, F> {
                     }
                 }
                 let after = norm(&part);
-                if after > DEPENDENT * before.max(DEPENDENT) {
+                if after > DEPENDENT && q.len() < most {
                     part.iter_mut().for_each(|p| *p = *p * T::real(1.0 / after));
                     q.push(part);
                 }
@@ -348,7 +348,7 @@ impl<T: Scalar, F: FnMut(&mut [T])> Krylov<'_, T, F> {
 
     /// Eigenvectors, improved by one application of the operator, and error estimates.
     fn finish(&mut self) -> Vec<Ritz> {
-        let Some(look) = (self.m > 0).then(|| self.look(SLACK)).flatten() else {
+        let Some(look) = (self.m > 0).then(|| self.look()).flatten() else {
             return Vec::new();
         };
         let m = self.m;
@@ -377,33 +377,27 @@ impl<T: Scalar, F: FnMut(&mut [T])> Krylov<'_, T, F> {
                         let s = look.vectors[(i, j)];
                         x.iter_mut().zip(&self.basis[i]).for_each(|(x, v)| *x += v.complex() * s);
                     }
-                    let y = self.image(&x);
+                    let parts = self.parts(&x, &accepted, theta.im == 0.0);
+                    x = compose(&parts);
+                    let y = compose(&self.images(parts));
                     // What rounding added along vectors of larger eigenvalues is no residual.
                     let mut d: Vec<c64> = y.iter().zip(&x).map(|(y, x)| y - theta * x).collect();
-                    for q in &accepted {
-                        let h = c64::dot(q, &d);
-                        c64::add_scaled(&mut d, -h, q);
-                    }
-                    let measured = norm(&d) / theta.norm();
+                    let measured = remainder(&mut d, &accepted) / theta.norm();
                     x.iter_mut().zip(&d).for_each(|(x, d)| *x = theta * *x + d);
                     let length = norm(&x);
                     x.iter_mut().for_each(|x| *x /= length);
                     let noise = f64::EPSILON * look.theta[0].norm() / theta.norm();
-                    let estimate = look.residual[j] / theta.norm();
+                    let estimate = (look.next[j] + look.lost[j]) / theta.norm();
                     Ritz {
                         theta,
                         vector: x,
                         error: (measured.max(estimate) + noise) * conditions[j],
-                        converged: look.is_converged(j, SLACK * self.settings.tolerance),
+                        converged: look.is_converged(j, self.settings.tolerance),
                     }
                 }
             };
             let mut q = ritz.vector.clone();
-            for other in &accepted {
-                let h = c64::dot(other, &q);
-                c64::add_scaled(&mut q, -h, other);
-            }
-            let length = norm(&q);
+            let length = remainder(&mut q, &accepted);
             if length > DEPENDENT {
                 q.iter_mut().for_each(|q| *q /= length);
                 accepted.push(q);
@@ -413,20 +407,55 @@ impl<T: Scalar, F: FnMut(&mut [T])> Krylov<'_, T, F> {
         out
     }
 
-    /// The operator applied to a complex vector.
-    fn image(&mut self, x: &[c64]) -> Vec<c64> {
-        let mut image = vec![c64::ZERO; x.len()];
-        let mut factor = c64::new(1.0, 0.0);
+    /// The real and the imaginary part of an eigenvector, the phase chosen; of a `single` one, of
+    /// a real eigenvalue, the part that is new beside those accepted.
+    fn parts(&self, x: &[c64], accepted: &[Vec<c64>], single: bool) -> Vec<Vec<T>> {
         let mut parts = Vec::new();
         T::parts(x, |part| parts.push(part));
-        for mut part in parts {
-            (self.apply)(&mut part);
-            self.applications += 1;
-            image.iter_mut().zip(&part).for_each(|(y, p)| *y += factor * p.complex());
-            factor = c64::new(0.0, 1.0);
+        if T::REAL && single {
+            let new = |part: &Vec<T>| {
+                let mut part: Vec<c64> = part.iter().map(|p| p.complex()).collect();
+                remainder(&mut part, accepted)
+            };
+            let imaginary = parts.pop();
+            if let (Some(re), Some(im)) = (parts.first_mut(), imaginary)
+                && new(&im) > new(re)
+            {
+                *re = im;
+            }
+            for part in &mut parts {
+                let inverse = T::real(1.0 / norm(part));
+                part.iter_mut().for_each(|p| *p = *p * inverse);
+            }
         }
-        image
+        parts
     }
+
+    fn images(&mut self, mut parts: Vec<Vec<T>>) -> Vec<Vec<T>> {
+        for part in &mut parts {
+            (self.apply)(part);
+            self.applications += 1;
+        }
+        parts
+    }
+}
+
+/// The complex vector of these parts.
+fn compose<T: Scalar>(parts: &[Vec<T>]) -> Vec<c64> {
+    let mut out = vec![c64::ZERO; parts.first().map_or(0, Vec::len)];
+    for (part, factor) in parts.iter().zip([c64::new(1.0, 0.0), c64::new(0.0, 1.0)]) {
+        out.iter_mut().zip(part).for_each(|(x, p)| *x += factor * p.complex());
+    }
+    out
+}
+
+/// Removes the parts along an orthonormal basis and returns the length of what is left.
+fn remainder(x: &mut [c64], basis: &[Vec<c64>]) -> f64 {
+    for q in basis {
+        let h = c64::dot(q, x);
+        c64::add_scaled(x, -h, q);
+    }
+    norm(x)
 }
 
 impl Look {
@@ -438,13 +467,24 @@ impl Look {
     }
 
     fn is_converged(&self, i: usize, tolerance: f64) -> bool {
-        self.residual[i] <= tolerance * self.theta[i].norm()
+        self.next[i] + self.lost[i] / SLACK <= tolerance * self.theta[i].norm()
     }
 
-    /// Sum of the logarithms of the wanted eigenvalues: grows when a copy takes the place of a
+    /// Whether the largest eigenvalue beside the wanted ones, all of them converged, is known well
+    /// enough to say that it is none of them.
+    fn settled(&self, tolerance: f64) -> bool {
+        let (least, i) = (self.theta[self.wanted - 1].norm(), self.wanted);
+        self.theta.get(i).is_some_and(|candidate| {
+            let residual = self.next[i] + self.lost[i] / SLACK;
+            // or it is a copy of the least wanted one, beyond what was asked for
+            residual <= (MARGIN * (least - candidate.norm())).max(tolerance * least)
+        })
+    }
+
+    /// Sum of the logarithms of the first `k` eigenvalues: grows when a copy takes the place of a
     /// smaller one.
-    fn score(&self) -> f64 {
-        self.theta[..self.wanted].iter().map(|t| t.norm().ln()).sum()
+    fn score(&self, k: usize) -> f64 {
+        self.theta[..k.min(self.theta.len())].iter().map(|t| t.norm().ln()).sum()
     }
 }
 

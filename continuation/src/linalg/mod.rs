@@ -34,6 +34,7 @@ mod krylov;
 mod lanczos;
 mod ldlt;
 mod scalar;
+mod small_symmetric;
 mod sparse;
 mod sparse_lu;
 mod symmetric_band;

@@ -22,9 +22,8 @@ pub(super) trait Scalar:
     fn dot(x: &[Self], y: &[Self]) -> Self;
     /// `y += a x`.
     fn add_scaled(y: &mut [Self], a: Self, x: &[Self]);
-    /// Eigenvalues and vectors of the `m` by `m` matrix of these entries; `None` if that fails.
-    fn eigen(m: usize, entry: impl FnMut(usize, usize) -> Self) -> Option<SmallEigen>;
-    /// Vectors of this type that span a complex one, and its conjugate: one or two.
+    /// Vectors of this type that span a complex one, and its conjugate: one or two, orthogonal,
+    /// the longer one first.
     fn parts(x: &[c64], visit: impl FnMut(Vec<Self>));
     /// Fills with random numbers from a source of real ones.
     fn fill(x: &mut [Self], source: impl FnMut(&mut [f64]));
@@ -34,13 +33,18 @@ pub(super) fn norm<T: Scalar>(x: &[T]) -> f64 {
     x.iter().map(|x| x.square()).sum::<f64>().sqrt()
 }
 
-fn normalised(u: faer::MatRef<'_, c64>) -> Mat<c64> {
-    let mut u = u.to_owned();
-    for j in 0..u.ncols() {
-        let length = (0..u.nrows()).map(|i| u[(i, j)].norm_sqr()).sum::<f64>().sqrt();
-        (0..u.nrows()).for_each(|i| u[(i, j)] /= length);
+/// Eigenvalues and vectors of the `m` by `m` matrix of these entries; `None` if that fails.
+///
+/// In complex arithmetic for real matrices too: faer 0.24 gives wrong eigenvectors of real
+/// matrices with equal complex pairs.
+pub(super) fn eigen(m: usize, entry: impl FnMut(usize, usize) -> c64) -> Option<SmallEigen> {
+    let eigen = Mat::from_fn(m, m, entry).eigen().ok()?;
+    let mut vectors = eigen.U().to_owned();
+    for j in 0..m {
+        let length = (0..m).map(|i| vectors[(i, j)].norm_sqr()).sum::<f64>().sqrt();
+        (0..m).for_each(|i| vectors[(i, j)] /= length);
     }
-    u
+    Some(((0..m).map(|i| eigen.S()[i]).collect(), vectors))
 }
 
 impl Scalar for f64 {
@@ -71,16 +75,11 @@ impl Scalar for f64 {
         vector::add_scaled(y, a, x);
     }
 
-    fn eigen(m: usize, entry: impl FnMut(usize, usize) -> Self) -> Option<SmallEigen> {
-        let eigen = Mat::from_fn(m, m, entry).eigen().ok()?;
-        Some(((0..m).map(|i| eigen.S()[i]).collect(), normalised(eigen.U())))
-    }
-
     fn parts(x: &[c64], mut visit: impl FnMut(Vec<Self>)) {
-        visit(x.iter().map(|x| x.re).collect());
-        if x.iter().any(|x| x.im != 0.0) {
-            visit(x.iter().map(|x| x.im).collect());
-        }
+        let square: c64 = x.iter().map(|x| x * x).sum();
+        let turn = c64::from_polar(1.0, -0.5 * square.arg());
+        visit(x.iter().map(|x| (turn * x).re).collect());
+        visit(x.iter().map(|x| (turn * x).im).collect());
     }
 
     fn fill(x: &mut [Self], mut source: impl FnMut(&mut [f64])) {
@@ -116,11 +115,6 @@ impl Scalar for c64 {
         for (y, x) in y.iter_mut().zip(x) {
             *y += a * x;
         }
-    }
-
-    fn eigen(m: usize, entry: impl FnMut(usize, usize) -> Self) -> Option<SmallEigen> {
-        let eigen = Mat::from_fn(m, m, entry).eigen().ok()?;
-        Some(((0..m).map(|i| eigen.S()[i]).collect(), normalised(eigen.U())))
     }
 
     fn parts(x: &[c64], mut visit: impl FnMut(Vec<Self>)) {

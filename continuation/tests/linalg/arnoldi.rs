@@ -174,6 +174,10 @@ fn multiple_and_defective_eigenvalues() {
     check(&found, 7, &exact, (0.1, 0.0), 1e-9);
     let upper = found.pairs.iter().filter(|p| p.value.1 > 1.0).count();
     assert_eq!(upper, 2);
+    for pair in found.pairs.chunks(2).filter(|p| p[0].value.1 != 0.0) {
+        let ((p, q), (r, s)) = (pair[0].value, pair[1].value);
+        assert!(p == r && q == -s && q > 0.0, "{pair:?}");
+    }
     let found = Arnoldi::new(n, 2).nearest_to_imaginary(&a, None, 1.4).unwrap();
     check(&found, 2, &exact, (0.0, 1.4), 1e-9);
     // Jordan block: half the digits
@@ -225,4 +229,61 @@ fn symmetric_storage_has_no_complex_form_and_limits_are_kept() {
     assert!(!found.report.complete && found.report.solves < 30, "{:?}", found.report);
     let bad = Arnoldi::new(5, 2).nearest(0.0, identity, |x| x.fill(f64::NAN), None);
     assert!(!bad.report.complete && bad.report.converged == 0);
+}
+
+/// Spectra with multiplicities up to three, real and complex. The seeds are fixed: a search for
+/// copies may fail, here in one of some ten thousand cases.
+#[test]
+fn known_spectra() {
+    for seed in 0..150 {
+        let mut random = Random(seed);
+        let mut integer = |below: f64| (0.5 * below * (random.next() + 1.0)) as usize;
+        let (n, k, copies) = (2 + integer(58.0), 1 + integer(6.0), 1 + integer(3.0));
+        let mut d = Mat::<f64>::zeros(n, n);
+        let mut exact = Vec::new();
+        let mut i = 0;
+        while i < n {
+            let (re, im) = (3.0 * random.next(), 3.0 * random.next().abs());
+            let pair = random.next() > 0.0;
+            for _ in 0..copies {
+                if pair && i + 1 < n {
+                    (d[(i, i)], d[(i + 1, i + 1)], d[(i, i + 1)], d[(i + 1, i)]) =
+                        (re, re, im, -im);
+                    exact.extend([(re, im), (re, -im)]);
+                    i += 2;
+                } else if i < n {
+                    d[(i, i)] = re;
+                    exact.push((re, 0.0));
+                    i += 1;
+                }
+            }
+        }
+        let p = to_mat(&random.dense(n)) * faer::Scale(1.0 / (n as f64).sqrt())
+            + Mat::<f64>::identity(n, n) * faer::Scale(2.0);
+        let inverse = p.full_piv_lu().inverse();
+        if inverse.norm_max() > 5.0 {
+            continue;
+        }
+        let a = to_dense(&(&p * &d * inverse));
+        let (shift, omega) = (random.next(), 2.0 * random.next());
+        let real = nearest(&Arnoldi::new(n, k), &a, None, shift);
+        let imaginary = Arnoldi::new(n, k).nearest_to_imaginary(&a, None, omega).unwrap();
+        for (found, shift) in [(real, (shift, 0.0)), (imaginary, (0.0, omega))] {
+            assert!(found.report.complete, "{:?}", found.report);
+            let from = |z: &(f64, f64)| (z.0 - shift.0).hypot(z.1 - shift.1);
+            let mut sorted = exact.clone();
+            sorted.sort_by(|a, b| from(a).total_cmp(&from(b)));
+            assert!(found.pairs.len() >= k.min(n));
+            for (pair, exact) in found.pairs.iter().zip(&sorted) {
+                let e = (from(&pair.value) - from(exact)).abs();
+                assert!(
+                    e < 1e-7 * from(exact).max(0.1),
+                    "{:e} {:?} {:?}",
+                    e,
+                    found.pairs.iter().map(|p| p.value).collect::<Vec<_>>(),
+                    &sorted[..k.min(n)]
+                );
+            }
+        }
+    }
 }

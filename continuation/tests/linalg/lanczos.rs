@@ -269,7 +269,9 @@ fn mass_without_multipliers() {
 
 #[test]
 fn nothing_to_find() {
+    fn is_send(_: &impl Send) {}
     let mut l = Lanczos::new(5, 3);
+    is_send(&l);
     let report = l.nearest(0.0, |_, y| y.fill(0.0), |_| {}, None);
     assert!(report.complete && l.values().is_empty(), "{report:?}");
     let identity = |x: &[f64], y: &mut [f64]| y.copy_from_slice(x);
@@ -302,4 +304,42 @@ fn iteration_limit_and_restarts() {
     let mut l = Lanczos::new(300, 4).with_settings(few);
     let report = l.nearest(0.0, identity, |x| a.solve(x), None);
     assert!(!report.complete && report.solves <= 24 && report.converged < 4, "{report:?}");
+}
+
+/// Spectra with multiplicities up to three and values near the shift.
+#[test]
+fn known_spectra() {
+    for seed in 0..200 {
+        let mut random = Random(seed);
+        let mut integer = |below: f64| (0.5 * below * (random.next() + 1.0)) as usize;
+        let (n, k, copies) = (1 + integer(69.0), 1 + integer(7.0), 1 + integer(3.0));
+        let mut diagonal: Vec<f64> = Vec::new();
+        while diagonal.len() < n {
+            let sign = if random.next() > 0.6 { -1.0 } else { 1.0 };
+            let value = sign * 10f64.powf(2.0 * random.next());
+            (0..copies).for_each(|_| diagonal.push(value));
+        }
+        diagonal.truncate(n);
+        let mut a = hidden(&diagonal, &mut random);
+        factor(&mut a);
+        let below = diagonal.iter().filter(|v| **v < 0.0).count();
+        let identity = |x: &[f64], y: &mut [f64]| y.copy_from_slice(x);
+        let mut l = Lanczos::new(n, k);
+        let report = l.lowest(0.0, Some(below), identity, |x| a.solve(x), None);
+        diagonal.sort_by(f64::total_cmp);
+        let expected = &diagonal[..k.max(below).min(n)];
+        assert!(report.complete, "{:?}", report);
+        assert_eq!(l.values().len(), expected.len());
+        for (i, value) in l.values().iter().enumerate() {
+            let e = (value - expected[i]).abs();
+            assert!(e < 1e-9 * expected[i].abs() + 1e-13, "{}: {:?} {:?}", i, l.values(), expected);
+        }
+        let report = l.nearest(0.0, identity, |x| a.solve(x), None);
+        diagonal.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+        assert!(report.complete, "{:?}", report);
+        for (value, expected) in l.values().iter().zip(&diagonal) {
+            let e = (value.abs() - expected.abs()).abs();
+            assert!(e < 1e-9 * expected.abs(), "{:?} {:?}", l.values(), &diagonal[..k.min(n)]);
+        }
+    }
 }

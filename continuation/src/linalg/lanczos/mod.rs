@@ -1,7 +1,11 @@
 //! Shift-invert Lanczos for symmetric pencils.
 
-use super::eigen::{EigenReport, EigenSettings, Noise, SmallSymmetric};
-use super::vector::{add_scaled, dot};
+use super::eigen::{EigenReport, EigenSettings, Noise};
+use super::small_symmetric::SmallSymmetric;
+use super::vector::add_scaled;
+
+mod basis;
+mod vectors;
 
 /// Increase of [`Lanczos::score`] from which on a search has found something.
 const FOUND: f64 = 1e-6;
@@ -12,17 +16,12 @@ const PROBE: usize = 6;
 const PATIENCE: usize = 20;
 /// Random vectors tried for missing eigenvalues before they are given up.
 const ATTEMPTS: usize = 3;
-/// Relative residual at which a vector that is not wanted stays in the basis for a search.
-const NEARLY: f64 = 1e-3;
-/// Excess of the tolerance that is allowed to vectors once they have met it: bounds add up when
-/// copies mix with them.
-const SLACK: f64 = 4.0;
-/// Passes of Gram-Schmidt after which a vector counts as dependent.
-const PASSES: usize = 5;
-/// Basis vectors beyond the wanted ones.
-const ROOM: usize = 30;
-/// Coordinates that are rotated at a time in a restart.
-const CHUNK: usize = 64;
+/// Residual of an unwanted eigenvalue, relative to its distance from the wanted ones, at which a
+/// search ends.
+const MARGIN: f64 = 0.5;
+/// Part of the residual that is due to vectors given up counts this many times less: each is
+/// below the tolerance when it is given up, but they add up as copies are found.
+const SLACK: f64 = 30.0;
 
 /// Eigenvalues of `A x = λ M x` about a shift `σ`, with `A` symmetric and `M` symmetric positive
 /// semidefinite, from solves with `A − σM`.
@@ -71,12 +70,14 @@ pub struct Lanczos {
     basis: Vec<f64>,
     mass_basis: Vec<f64>,
     t: Vec<f64>,
-    /// Norm of the part of the operator's action on a vector that lies outside of the basis.
-    leak: Vec<f64>,
+    /// Components of the images of the basis along next vectors that were given up for random
+    /// ones, a row of `capacity` entries for each.
+    lost: Vec<f64>,
+    /// Component of the last vector's image along the next one, if that continues it.
+    beta: f64,
     /// Whether the next vector continues the last one.
     chained: bool,
     small: SmallSymmetric,
-    probe: SmallSymmetric,
     /// Ritz values by priority: the wanted ones first.
     ranking: Vec<usize>,
     w: Vec<f64>,
@@ -123,10 +124,10 @@ impl Lanczos {
             basis: Vec::new(),
             mass_basis: Vec::new(),
             t: Vec::new(),
-            leak: Vec::new(),
+            lost: Vec::new(),
+            beta: 0.0,
             chained: false,
             small: SmallSymmetric::new(0),
-            probe: SmallSymmetric::new(0),
             ranking: Vec::new(),
             w: vec![0.0; n],
             u: vec![0.0; n],
@@ -218,30 +219,6 @@ impl Lanczos {
         }
     }
 
-    fn reserve(&mut self, wanted: usize) {
-        if wanted <= self.room && self.capacity > 0 {
-            return;
-        }
-        self.room = wanted;
-        let capacity = (2 * wanted + ROOM).min(self.n);
-        let n = self.n;
-        self.capacity = capacity;
-        self.basis = vec![0.0; (capacity + 1) * n];
-        self.mass_basis = vec![0.0; (capacity + 1) * n];
-        self.t = vec![0.0; capacity * capacity];
-        self.leak = vec![0.0; capacity];
-        self.small = SmallSymmetric::new(capacity);
-        self.probe = SmallSymmetric::new(capacity);
-        self.ranking = Vec::with_capacity(capacity);
-        self.rotated = vec![0.0; capacity * CHUNK];
-        for list in [&mut self.values, &mut self.errors] {
-            *list = Vec::with_capacity(wanted);
-        }
-        self.converged = Vec::with_capacity(wanted);
-        self.order = Vec::with_capacity(wanted);
-        self.vectors = vec![0.0; wanted * n];
-    }
-
     fn run(
         &mut self,
         shift: f64,
@@ -273,7 +250,9 @@ impl Lanczos {
         solve: &mut impl FnMut(&mut [f64]),
         start: Option<&[f64]>,
     ) -> bool {
-        (self.m, self.solves, self.noise, self.chained) = (0, 0, Noise::new(), false);
+        (self.m, self.solves, self.noise) = (0, 0, Noise::new());
+        (self.chained, self.beta) = (false, 0.0);
+        self.lost.clear();
         if count == 0 {
             return true;
         }
@@ -300,8 +279,7 @@ impl Lanczos {
             if self.m < check && continued && !full && !stop {
                 continue;
             }
-            let slack = if probe.is_some() { SLACK } else { 1.0 };
-            let Some(look) = self.look(wanted, count, slack) else { return false };
+            let Some(look) = self.look(wanted, count) else { return false };
             if self.m == self.n {
                 return self.all_seen(wanted);
             }
@@ -314,7 +292,7 @@ impl Lanczos {
             let found = self.score(look.available) > score + FOUND;
             if let Some(first) = probe {
                 let over = converged && enough && !found && self.m >= first + PROBE;
-                if over && self.settled(wanted, first, look.available) {
+                if over && self.settled(wanted, look.available) {
                     return true;
                 }
             }
@@ -327,8 +305,7 @@ impl Lanczos {
                 if attempts > ATTEMPTS {
                     return false;
                 }
-                let keep = self.settled_vectors(look.available);
-                self.restart(keep, false);
+                self.restart(look.available, false);
                 (probe, last_break) = (Some(self.m), self.solves);
                 score = self.score(look.available);
                 check = self.m + PROBE;
@@ -364,77 +341,8 @@ impl Lanczos {
         }
     }
 
-    /// Applies the operator to the next vector, which gives a column of the projected matrix and
-    /// the vector after it; false if there is none, the space being invariant.
-    fn expand(
-        &mut self,
-        mass: &mut impl FnMut(&[f64], &mut [f64]),
-        solve: &mut impl FnMut(&mut [f64]),
-    ) -> bool {
-        let (n, j, ld) = (self.n, self.m, self.capacity);
-        self.w.copy_from_slice(&self.mass_basis[j * n..(j + 1) * n]);
-        solve(&mut self.w);
-        self.solves += 1;
-        self.t[j * ld..][..=j].fill(0.0);
-        if self.chained {
-            self.leak[j - 1] = 0.0; // it went into this vector
-        }
-        self.m += 1;
-        let rest = self.append(true, mass);
-        self.leak[j] = rest.unwrap_or(0.0);
-        for i in 0..j {
-            self.t[j + i * ld] = self.t[i + j * ld];
-        }
-        self.chained = rest.is_some();
-        self.chained
-    }
-
-    /// Orthogonalises `w` against the basis and appends it; its norm before normalisation, `None`
-    /// if nothing is left of it. The coefficients go into the last column if it is `open`.
-    fn append(&mut self, open: bool, mass: &mut impl FnMut(&[f64], &mut [f64])) -> Option<f64> {
-        let (n, m, ld) = (self.n, self.m, self.capacity);
-        let mut first = if open && self.chained { m.saturating_sub(2) } else { 0 };
-        for _ in 0..=PASSES {
-            let mut removed = 0.0;
-            for i in first..m {
-                let h = dot(&self.mass_basis[i * n..(i + 1) * n], &self.w);
-                add_scaled(&mut self.w, -h, &self.basis[i * n..(i + 1) * n]);
-                removed += h * h;
-                if open {
-                    self.t[i + (m - 1) * ld] += h;
-                }
-            }
-            if first > 0 {
-                first = 0; // the bulk is gone, now all of them
-                continue;
-            }
-            mass(&self.w, &mut self.u);
-            let square = dot(&self.w, &self.u);
-            if !(square > 0.0 && square.is_finite()) || m == self.n {
-                return None;
-            }
-            if square >= removed {
-                let norm = square.sqrt();
-                let (v, mv) = (&mut self.basis[m * n..], &mut self.mass_basis[m * n..]);
-                for i in 0..n {
-                    v[i] = self.w[i] / norm;
-                    mv[i] = self.u[i] / norm;
-                }
-                return Some(norm);
-            }
-        }
-        None
-    }
-
-    /// Makes a random vector the next one; false if the basis spans the whole space already.
-    fn append_random(&mut self, mass: &mut impl FnMut(&[f64], &mut [f64])) -> bool {
-        self.noise.fill(&mut self.w);
-        self.chained = false;
-        self.m < self.n && self.append(false, mass).is_some()
-    }
-
     /// Solves the projected problem and ranks its eigenvalues; `None` if it is not finite.
-    fn look(&mut self, wanted: Wanted, count: usize, slack: f64) -> Option<Look> {
+    fn look(&mut self, wanted: Wanted, count: usize) -> Option<Look> {
         if !self.small.decompose(&self.t, self.capacity, 0, self.m) {
             return None;
         }
@@ -442,8 +350,7 @@ impl Lanczos {
         let (mut converged, mut worst) = (0, 0.0);
         for r in 0..available {
             let i = self.ranking[r];
-            let tolerance = slack * self.settings.tolerance * self.small.value(i).abs();
-            let excess = self.residual(i) / tolerance;
+            let excess = self.excess(i);
             converged += usize::from(excess <= 1.0);
             worst = f64::max(worst, excess);
         }
@@ -476,9 +383,21 @@ impl Lanczos {
         }
     }
 
-    /// Bound of the residual of Ritz vector `i`.
-    fn residual(&self, i: usize) -> f64 {
-        (0..self.m).map(|j| (self.leak[j] * self.small.component(i, j)).abs()).sum()
+    /// Residual of Ritz vector `i` along the next vector, and a bound of that along the vectors
+    /// that were given up.
+    fn residual(&self, i: usize) -> (f64, f64) {
+        let lost = |row: &[f64]| {
+            let terms = row[..self.m].iter().enumerate();
+            terms.map(|(j, b)| b * self.small.component(i, j)).sum::<f64>().abs()
+        };
+        let next = self.beta * self.small.component(i, self.m - 1).abs();
+        (next, self.lost.chunks_exact(self.capacity).map(lost).sum())
+    }
+
+    /// Residual of Ritz vector `i` relative to the tolerance; converged if at most 1.
+    fn excess(&self, i: usize) -> f64 {
+        let (next, lost) = self.residual(i);
+        (next + lost / SLACK) / (self.settings.tolerance * self.small.value(i).abs())
     }
 
     /// Sum of the logarithms of the wanted eigenvalues of the operator: grows when a copy takes
@@ -487,167 +406,21 @@ impl Lanczos {
         self.ranking[..available].iter().map(|&i| self.small.value(i).abs().ln()).sum()
     }
 
-    /// Whether the basis from vector `first` on, taken alone, has seen the largest eigenvalue it
-    /// can see, and that is not a wanted one.
-    fn settled(&mut self, wanted: Wanted, first: usize, available: usize) -> bool {
-        let positive_only = matches!(wanted, Wanted::Sides(..));
-        let size = |value: f64| if positive_only { value } else { value.abs() };
-        let least = self.ranking[..available]
-            .iter()
-            .map(|&i| size(self.small.value(i)))
-            .filter(|v| *v > 0.0)
-            .fold(f64::INFINITY, f64::min);
-        let m = self.m - first;
-        if !self.probe.decompose(&self.t, self.capacity, first, m) {
-            return false;
-        }
-        let ends = if positive_only { [m - 1, m - 1] } else { [0, m - 1] };
-        ends.into_iter().all(|i| {
-            let residual = self.leak[self.m - 1] * self.probe.component(i, m - 1).abs();
-            residual <= 0.5 * (least - size(self.probe.value(i)))
+    /// Whether the largest eigenvalue beside the wanted ones, all of them converged, is known well
+    /// enough to say that it is none of them.
+    fn settled(&self, wanted: Wanted, available: usize) -> bool {
+        let value = |i: usize| match wanted {
+            Wanted::Nearest(_) => self.small.value(i).abs(),
+            Wanted::Sides(..) => self.small.value(i),
+        };
+        let sizes = self.ranking[..available].iter().map(|&i| value(i));
+        let least = sizes.filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
+        self.ranking.get(available).is_some_and(|&i| {
+            let (next, lost) = self.residual(i);
+            // or it is a copy of the least wanted one, beyond what was asked for
+            let margin = (MARGIN * (least - value(i))).max(self.settings.tolerance * least);
+            next + lost / SLACK <= margin
         })
-    }
-
-    /// The wanted vectors and as many after them as have nearly converged. Rounding makes the
-    /// later vectors of a chain see the copies; they must not stay when their successor is lost.
-    fn settled_vectors(&self, available: usize) -> usize {
-        let near = |&i: &usize| self.residual(i) <= NEARLY * self.small.value(i).abs();
-        let most = self.m.min(self.capacity.saturating_sub(2 * PROBE)).max(available);
-        available + self.ranking[available..most].iter().take_while(|i| near(i)).count()
-    }
-
-    /// Replaces the basis by the first `keep` Ritz vectors. The next vector stays the next one,
-    /// unless it is to be replaced.
-    fn restart(&mut self, keep: usize, stays: bool) {
-        let (n, m, ld) = (self.n, self.m, self.capacity);
-        let keep = keep.min(m);
-        for vectors in [&mut self.basis, &mut self.mass_basis] {
-            for from in (0..n).step_by(CHUNK) {
-                let width = CHUNK.min(n - from);
-                for (r, &i) in self.ranking[..keep].iter().enumerate() {
-                    let target = &mut self.rotated[r * CHUNK..][..width];
-                    target.fill(0.0);
-                    for j in 0..m {
-                        let v = &vectors[j * n + from..][..width];
-                        add_scaled(target, self.small.component(i, j), v);
-                    }
-                }
-                for r in 0..keep {
-                    vectors[r * n + from..][..width]
-                        .copy_from_slice(&self.rotated[r * CHUNK..][..width]);
-                }
-            }
-            vectors.copy_within(m * n..(m + 1) * n, keep * n);
-        }
-        // what leaks into the next vector will appear in the next column
-        if self.chained && stays {
-            self.leak[m - 1] = 0.0;
-        }
-        for r in 0..keep {
-            self.u[r] = self.residual(self.ranking[r]);
-            self.w[r] = self.small.value(self.ranking[r]);
-        }
-        for r in 0..keep {
-            self.leak[r] = self.u[r];
-            self.t[r * ld..][..keep].fill(0.0);
-            self.t[r * (ld + 1)] = self.w[r];
-        }
-        self.m = keep;
-        self.chained = false; // to all of them, not to the last alone
-    }
-
-    /// Eigenvectors, improved by one inverse iteration, eigenvalues and their errors.
-    fn finish(
-        &mut self,
-        wanted: Wanted,
-        shift: f64,
-        mass: &mut impl FnMut(&[f64], &mut [f64]),
-        solve: &mut impl FnMut(&mut [f64]),
-    ) {
-        let n = self.n;
-        for list in [&mut self.values, &mut self.errors] {
-            list.clear();
-        }
-        self.converged.clear();
-        self.order.clear();
-        if self.m == 0 || !self.small.decompose(&self.t, self.capacity, 0, self.m) {
-            return;
-        }
-        let found = self.rank(wanted).min(self.room);
-        let small = &self.small;
-        self.ranking[..found]
-            .sort_unstable_by(|&i, &j| small.value(j).abs().total_cmp(&small.value(i).abs()));
-        for (r, &i) in self.ranking[..found].iter().enumerate() {
-            let x = &mut self.vectors[r * n..(r + 1) * n];
-            x.fill(0.0);
-            for j in 0..self.m {
-                add_scaled(x, self.small.component(i, j), &self.basis[j * n..(j + 1) * n]);
-            }
-        }
-        // M x takes the place of the basis
-        for r in 0..found {
-            let estimate = self.residual(self.ranking[r]);
-            let ritz = self.small.value(self.ranking[r]);
-            let x = &mut self.vectors[r * n..(r + 1) * n];
-            let (done, rest) = self.mass_basis.split_at_mut(r * n);
-            let mx = &mut rest[..n];
-            mass(x, mx);
-            let y = &mut self.w;
-            y.copy_from_slice(mx);
-            solve(y);
-            self.solves += 1;
-            // A vector of larger θ that rounding left in this one hardly matters there.
-            for (i, mv) in done.chunks_exact(n).enumerate() {
-                let h = dot(mv, y);
-                add_scaled(y, -h, &self.basis[i * n..(i + 1) * n]);
-            }
-            let theta = dot(mx, y);
-            x.iter_mut().zip(y.iter()).for_each(|(x, y)| *x = y - theta * *x);
-            mass(x, &mut self.u);
-            let residual = dot(x, &self.u).max(0.0);
-            let length = (theta * theta + residual).sqrt();
-            // x is the residual now, and M y = M x θ + M r
-            for i in 0..n {
-                mx[i] = (mx[i] * theta + self.u[i]) / length;
-                x[i] = y[i] / length;
-            }
-            self.basis[r * n..(r + 1) * n].copy_from_slice(x);
-            let relative = residual.sqrt() / theta.abs();
-            let distance = theta / (theta * theta + residual);
-            self.values.push(shift + distance);
-            self.errors.push(distance.abs() * relative.min(self.sharpened(r, ritz, relative)));
-            let tolerance = SLACK * self.settings.tolerance;
-            self.converged.push(relative.min(estimate / ritz.abs()) <= tolerance);
-            self.order.push(r);
-        }
-    }
-
-    /// The quadratic bound of a relative error: residual² / gap, without the values that are as
-    /// near as the residual.
-    fn sharpened(&self, r: usize, ritz: f64, residual: f64) -> f64 {
-        let gap = (0..self.small.len())
-            .filter(|&i| i != self.ranking[r])
-            .map(|i| (self.small.value(i) / ritz - 1.0).abs())
-            .filter(|gap| *gap > residual)
-            .fold(1.0, f64::min);
-        residual * residual / gap
-    }
-
-    /// Puts values, errors and flags into order; the vectors stay where they are.
-    fn sort(&mut self, shift: f64, ascending: bool) {
-        let (values, found) = (&self.values, self.values.len());
-        let key = |i: usize| if ascending { values[i] } else { (values[i] - shift).abs() };
-        self.order.sort_unstable_by(|&i, &j| key(i).total_cmp(&key(j)));
-        for (r, &i) in self.order.iter().enumerate() {
-            self.w[r] = self.values[i];
-            self.u[r] = self.errors[i];
-            self.ranking[r] = usize::from(self.converged[i]);
-        }
-        self.values.copy_from_slice(&self.w[..found]);
-        self.errors.copy_from_slice(&self.u[..found]);
-        for (flag, r) in self.converged.iter_mut().zip(&self.ranking) {
-            *flag = *r == 1;
-        }
     }
 }
 
