@@ -1,8 +1,4 @@
-//! Numerical continuation and bifurcation analysis of equilibria `f(u, p) = 0`.
-//!
-//! Floors, from the ground up; each uses only floors below it:
-//! [`linalg`] → [`problem`] → [`mod@newton`] → step (predict, correct, judge) → events (detect,
-//! locate) → [`tracer`]. A traced [`branch`] is plain data.
+#![doc = include_str!("../docs/tour.md")]
 
 pub mod branch;
 mod dense_problem;
@@ -10,6 +6,7 @@ mod derivative_check;
 #[cfg(feature = "dual")]
 mod dual_problem;
 mod events;
+pub mod guide;
 pub mod linalg;
 mod modes;
 pub mod newton;
