@@ -146,16 +146,15 @@ fn compare<P: Problem>(make: impl Fn() -> P, u: &[f64], p: f64, target: f64, sid
     }
 }
 
-fn enz() -> DenseProblem<impl Fn(&[f64], &[f64], &mut [f64])> {
-    DenseProblem::from_residual(2, &["p"], |s, p, r| {
-        let rate = |s: f64| 100.0 * s / (1.0 + s + s * s);
-        r[0] = p[0] - 2.0 * s[0] + s[1] - rate(s[0]);
-        r[1] = p[0] - 2.0 * s[1] + s[0] - rate(s[1]);
-    })
-}
-
 #[test]
 fn folds_and_pitchforks() {
+    let enz = || {
+        DenseProblem::from_residual(2, &["p"], |s, p, r| {
+            let rate = |s: f64| 100.0 * s / (1.0 + s + s * s);
+            r[0] = p[0] - 2.0 * s[0] + s[1] - rate(s[0]);
+            r[1] = p[0] - 2.0 * s[1] + s[0] - rate(s[1]);
+        })
+    };
     compare(enz, &[0.0, 0.0], 0.0, 40.0, true);
 }
 
