@@ -65,7 +65,9 @@ const AGREEMENT: f64 = 1e-9;
 
 impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
     /// `n` unknowns, named parameters, and `f(u, p, r)` that writes the residual to `r`; read as
-    /// `du/dt = f`, so that eigenvalues with positive real part are unstable.
+    /// `du/dt = f`, so that eigenvalues with positive real part are unstable. `u` and `r` have length
+    /// `n`, `p` that of the names; every entry of `r` is to be written. A state without a value gives
+    /// NaN, which the problem reports as an error.
     pub fn from_residual(n: usize, parameters: &[&'static str], f: F) -> Self {
         let parameters: Vec<Parameter> =
             parameters.iter().map(|&name| Parameter { name, unit: "", scale: 1.0 }).collect();
@@ -109,7 +111,8 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
         self
     }
 
-    /// A typical magnitude of a parameter.
+    /// A typical magnitude of a parameter ([`Parameter::scale`]), by default 1; without effect if there
+    /// is no such parameter.
     #[must_use]
     pub fn with_scale(mut self, which: ParamId, scale: f64) -> Self {
         if let Some(parameter) = self.parameters.get_mut(which.0) {

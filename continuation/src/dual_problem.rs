@@ -13,9 +13,10 @@ impl<D: DualNum<Primitive = f64> + Copy> Number for D {}
 pub trait Residual {
     /// Number of unknowns.
     fn dim(&self) -> usize;
-    /// The parameters.
+    /// The parameters, in the order of `p`.
     fn parameters(&self) -> &[Parameter];
-    /// `r = f(u, p)`.
+    /// `r = f(u, p)`; `u` and `r` have length [`Residual::dim`], `p` that of [`Residual::parameters`].
+    /// A state without a value gives NaN, which the problem reports as an error.
     fn evaluate<D: Number>(&self, u: &[D], p: &[D], r: &mut [D]);
     /// What the Jacobian's eigenvalues mean; by default `f` is `du/dt`.
     fn stability(&self) -> Stability {
@@ -25,7 +26,7 @@ pub trait Residual {
     fn observables(&self) -> &[&'static str] {
         &[]
     }
-    /// Scalar functions of a state.
+    /// Scalar functions of a state, `out` in the order of [`Residual::observables`].
     fn observe<D: Number>(&self, u: &[D], p: &[D], out: &mut [D]) {
         let _ = (u, p, out);
     }

@@ -13,7 +13,8 @@ use crate::problem::{EvalError, Problem, Stability, check_finite};
 /// The most unstable eigenvalues of a state, with their modes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Modes {
-    /// Eigenvalues, (real, imaginary) parts, the most unstable first.
+    /// Eigenvalues, (real, imaginary) parts, the most unstable first; fewer than asked for where the
+    /// iteration found fewer.
     pub values: Vec<(f64, f64)>,
     /// Eigenvectors of real eigenvalues of symmetric problems, of length 1 in the norm of `M`;
     /// empty where only the values are computed (full spectra of dense matrices).
@@ -22,7 +23,8 @@ pub struct Modes {
     pub certified: bool,
 }
 
-/// The `count` most unstable eigenvalues at a state, and their modes.
+/// The `count` most unstable eigenvalues at a state, and their modes. The state need not be a
+/// solution. Each vector has length [`Problem::dim`].
 ///
 /// ```
 /// use continuation::{modes, samples::Bratu};

@@ -12,10 +12,11 @@ use crate::problem::{EvalError, ParamId, Problem};
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NewtonError {
-    /// The starting state is outside the model's domain.
+    /// The starting state is outside the model's domain, or the Jacobian has no value at a state on
+    /// the way.
     #[error("the problem has no value at the starting state: {0}")]
     Start(EvalError),
-    /// The Jacobian is singular.
+    /// The Jacobian is singular to rounding, and the residual is not zero.
     #[error("the Jacobian is singular after {iterations} iterations")]
     Singular {
         /// Iterations done.
@@ -48,7 +49,7 @@ pub struct NewtonSettings {
     /// Corrections shorter than this, relative to the solution or to the longest correction on the
     /// way, in the problem's metric, have converged.
     pub tolerance: f64,
-    /// Most iterations.
+    /// Most iterations, each one assembly.
     pub max_iterations: usize,
 }
 
@@ -67,7 +68,17 @@ pub struct NewtonReport {
     pub correction: f64,
 }
 
-/// Solves `f(u, p) = 0` for `u`, starting from its given value.
+/// Solves `f(u, p) = 0` for `u`, starting from its given value. `u` has length [`Problem::dim`], `p`
+/// holds the values of all parameters; neither length is checked.
+///
+/// ```
+/// use continuation::{DenseProblem, newton};
+/// let problem = DenseProblem::from_residual(1, &["p"], |x, p, r| r[0] = x[0] * x[0] - p[0]);
+/// let mut u = [1.0];
+/// let report = newton(&problem, &mut u, &[2.0], &Default::default())?;
+/// assert!((u[0] - 2f64.sqrt()).abs() < 1e-15 && report.iterations < 8);
+/// # Ok::<(), continuation::NewtonError>(())
+/// ```
 ///
 /// # Errors
 /// When no solution was found; `u` then holds the best state reached.

@@ -10,7 +10,8 @@ pub struct Parameter {
     pub name: &'static str,
     /// Unit, for people; empty when dimensionless.
     pub unit: &'static str,
-    /// A typical magnitude, positive; difference steps are relative to it.
+    /// A typical magnitude, positive, in the parameter's unit: difference steps are relative to it,
+    /// and it stands for the range of a trace that has neither target nor domain.
     pub scale: f64,
 }
 
@@ -53,28 +54,34 @@ pub enum Stability {
 
 /// Equilibria `f(u, p) = 0` of a problem with `dim` unknowns and a few parameters.
 ///
-/// Slices in, `&mut` out. Only [`Problem::new_jacobian`] allocates.
+/// Slices in, `&mut` out. `u`, `r`, `out` of [`Problem::parameter_derivative`] and the vectors of
+/// [`Problem::metric`] have length [`Problem::dim`]; `p` has that of [`Problem::parameters`]. Only
+/// [`Problem::new_jacobian`] should allocate. States are tried that are no solutions, some of them
+/// far from one: a method that has no value there returns an error and does not panic.
+///
+/// [`crate::guide::tutorial`] builds one step by step; [`crate::check_derivatives`] tests it.
 pub trait Problem {
     /// Storage of the Jacobian; decides the linear algebra.
     type Jacobian: Matrix;
 
-    /// Number of unknowns.
+    /// Number of unknowns, at least 1.
     fn dim(&self) -> usize;
     /// The parameters, in the order in which `p` holds their values.
     fn parameters(&self) -> &[Parameter];
     /// A Jacobian with the problem's pattern, all zero.
     fn new_jacobian(&self) -> Self::Jacobian;
-    /// `r = f(u, p)`.
+    /// `r = f(u, p)`; `r` holds anything before. The unit of `f` does not matter.
     ///
     /// # Errors
     /// When `f` has no value there.
     fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError>;
-    /// `j = ∂f/∂u`.
+    /// `j = ∂f/∂u`, row `i` the derivatives of `f_i`. `j` holds the entries of an earlier call: an
+    /// assembly by adding begins with [`Matrix::set_zero`].
     ///
     /// # Errors
     /// When `f` has no value there.
     fn jacobian(&self, u: &[f64], p: &[f64], j: &mut Self::Jacobian) -> Result<(), EvalError>;
-    /// `out = ∂f/∂p[which]`.
+    /// `out = ∂f/∂p[which]`; `out` holds anything before.
     ///
     /// # Errors
     /// When `f` has no value there.
@@ -86,7 +93,8 @@ pub trait Problem {
         out: &mut [f64],
     ) -> Result<(), EvalError>;
 
-    /// Residual and Jacobian together, for problems in which they share work.
+    /// Residual and Jacobian together, for problems in which they share work. Must equal both
+    /// computed apart.
     ///
     /// # Errors
     /// When `f` has no value there.
@@ -102,7 +110,8 @@ pub trait Problem {
     }
 
     /// `y = M x`, the symmetric positive semidefinite metric in which arclength is measured:
-    /// `ds² = du·M du + dp²`. A mass matrix makes a length mean the same on every mesh.
+    /// `ds² = du·M du + dp²`. A mass matrix makes a length mean the same on every mesh; multipliers
+    /// may have weight zero. `M` is constant; the default is the identity.
     fn metric(&self, x: &[f64], y: &mut [f64]) {
         y.copy_from_slice(x);
     }
@@ -116,7 +125,7 @@ pub trait Problem {
         None
     }
 
-    /// What the Jacobian's eigenvalues mean.
+    /// What the Jacobian's eigenvalues mean; by default nothing, and no mode is counted as unstable.
     fn stability(&self) -> Stability {
         Stability::None
     }
@@ -132,7 +141,7 @@ pub trait Problem {
     }
 
     /// Number of negative eigenvalues that multipliers add to an energy Hessian; they are no
-    /// instabilities.
+    /// instabilities. One for each constraint whose multiplier is among the unknowns.
     fn multipliers(&self) -> usize {
         0
     }
@@ -144,12 +153,13 @@ pub trait Problem {
     }
 
     /// Names of the scalar functions of a state that are reported at every point and on which
-    /// events can be placed.
+    /// events can be placed ([`crate::Watch`]).
     fn observables(&self) -> &[&'static str] {
         &[]
     }
 
-    /// `out[k]` = observable `k` at `(u, p)`.
+    /// `out[k]` = observable `k` at `(u, p)`, in the order of [`Problem::observables`]. Finite values
+    /// only, where the branch is to be saved in a format without NaN.
     ///
     /// # Errors
     /// When an observable has no value there.
@@ -158,8 +168,8 @@ pub trait Problem {
         Ok(())
     }
 
-    /// Derivative of observable `k` in the direction `(du, dp)` of `(u, p[which])`; `None` (the
-    /// default) has the library take a central difference of [`Problem::observe`].
+    /// Derivative of observable `k` at `(u, p)` in the direction `(du, dp)` of `(u, p[which])`; `None`
+    /// (the default) has the library take a central difference of [`Problem::observe`].
     ///
     /// # Errors
     /// When the observable has no value there.

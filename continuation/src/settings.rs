@@ -15,15 +15,27 @@ pub struct SettingsError {
 }
 
 /// How a branch is traced. Lengths are arclengths in the problem's metric
-/// ([`crate::Problem::metric`]).
+/// ([`crate::Problem::metric`]); a range is that of the continued parameter: the distance from the
+/// start to the target, else the width of the domain, else the parameter's scale.
+///
+/// ```
+/// use continuation::Settings;
+/// let settings = Settings { target: Some(2.0), max_step: Some(0.1), ..Settings::default() };
+/// assert!(settings.validate().is_ok());
+/// let error = Settings { max_angle: 3.0, ..settings }.validate().unwrap_err();
+/// assert_eq!((error.key, error.value), ("max_angle", 3.0));
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
-    /// The trace ends the first time the parameter takes this value after leaving its start.
+    /// The trace ends the first time the parameter takes this value after leaving its start; met
+    /// exactly, as the last point, which is no event.
     pub target: Option<f64>,
-    /// The trace ends where the parameter leaves this interval.
+    /// The trace ends where the parameter meets a bound of this interval, both of them finite, with
+    /// the start inside; met exactly, as the last point.
     pub domain: Option<(f64, f64)>,
-    /// Whether the parameter increases at first; `None`: towards the target, else upwards.
+    /// Whether the parameter increases at first; `None`: towards the target, else upwards. Without
+    /// meaning for [`crate::Tracer::leaving`], which has a direction.
     pub increasing: Option<bool>,
     /// Longest step; `None`: a twentieth of the parameter's range in scaled arclength.
     pub max_step: Option<f64>,
@@ -31,17 +43,21 @@ pub struct Settings {
     pub min_step: Option<f64>,
     /// First step; `None`: a tenth of the longest.
     pub first_step: Option<f64>,
-    /// Largest number of points.
+    /// Largest number of points, at least 2; special points of the last step may come on top.
     pub max_points: usize,
-    /// Corrections smaller than this, relative to the scale of the unknowns, have converged.
+    /// Corrections smaller than this have converged, relative to 1 plus the size of the state, in
+    /// the scaled metric, in which unknowns and parameter are divided by their ranges.
     pub tolerance: f64,
-    /// Most corrector iterations in a step; a good step needs three.
+    /// Most corrector iterations in a step, at least 2; a good step needs three.
     pub max_iterations: usize,
-    /// Largest angle between successive tangents, in radians.
+    /// Largest angle between successive tangents, and between tangents and secant, in radians and
+    /// in the scaled metric; below 1.5.
     pub max_angle: f64,
-    /// Number of eigenvalues, the most unstable ones, to compute at every point.
+    /// Number of eigenvalues, the most unstable ones, to compute at every point
+    /// ([`crate::Point::eigenvalues`]); costs an assembly and some solves each.
     pub eigenvalues: usize,
-    /// Special points are located to this fraction of the scale of the unknowns.
+    /// Folds, zeros and extrema are located to this distance along the branch, in the scaled
+    /// metric. Branch points and Hopf points are met by Newton's method, to rounding.
     pub event_tolerance: f64,
 }
 

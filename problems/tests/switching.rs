@@ -23,7 +23,8 @@ impl Visitor for Explore {
         let mut done = 0;
         for _ in 0..self.depth {
             let known = all.len();
-            for branch in all[done..].to_vec() {
+            let level: Vec<Branch> = all[done..].to_vec();
+            for branch in level {
                 for event in &branch.events {
                     let Some(crossing) = event.crossing() else { continue };
                     for direction in &crossing.leaving {

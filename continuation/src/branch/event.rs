@@ -23,15 +23,17 @@ pub enum EventKind {
     GeneralisedHopf,
     /// A Hopf point at which a second pair of eigenvalues crosses the imaginary axis.
     DoubleHopf,
-    /// A zero of the named observable (minus the requested level).
+    /// A zero of the named observable.
     Zero(String),
     /// A local minimum of the named observable along the branch.
     Minimum(String),
     /// A local maximum of the named observable along the branch.
     Maximum(String),
-    /// The parameter takes a requested value.
+    /// The parameter takes a value asked for by [`crate::Watch::parameter`]. The end of the trace at
+    /// [`crate::Settings::target`] is no event.
     Target,
-    /// A kind that an application has given a name of its own.
+    /// An observable takes a value other than zero ([`crate::Watch::Value`]): its name and `-value`;
+    /// or a kind that an application has given a name of its own.
     Named(String),
 }
 
@@ -64,11 +66,11 @@ pub struct Event {
     pub point: usize,
     /// Value of the continued parameter there.
     pub p: f64,
-    /// Number of unstable modes before, along the branch.
+    /// Number of unstable modes before, along the branch; `None` as in [`crate::Point::unstable`].
     pub unstable_before: Option<usize>,
     /// Number of unstable modes after, along the branch.
     pub unstable_after: Option<usize>,
-    /// Largest component of the residual at the located point.
+    /// Largest component of the residual at the located point, in the unit of `f`.
     pub residual: f64,
     /// Estimated error of the location, as a length in the problem's metric.
     pub error_estimate: f64,
@@ -166,12 +168,12 @@ pub struct Crossing {
     pub leaving: Vec<Direction>,
 }
 
-/// A tangent at a branch point.
+/// A tangent at a branch point, of unit length in the problem's metric: `du·M du + dp² = 1`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Direction {
-    /// The unknowns' part.
+    /// The unknowns' part, of length [`crate::Problem::dim`].
     pub du: Vec<f64>,
-    /// The parameter's part.
+    /// The parameter's part; exactly 0 for a vertical branch.
     pub dp: f64,
     /// Where `dp` is 0: `p - p₀ ≈ bend x²`, `x` the multiple of the direction.
     pub bend: f64,
@@ -182,7 +184,7 @@ pub struct Direction {
 /// A Hopf point: periodic solutions are born.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct HopfForm {
-    /// The imaginary part of the critical eigenvalues.
+    /// The imaginary part of the critical eigenvalues, positive: an angular frequency.
     pub frequency: f64,
     /// First Lyapunov coefficient `l₁` (Kuznetsov, *Elements of Applied Bifurcation Theory*, Eq.
     /// 10.35), with the eigenvector of Euclidean length 1: negative is supercritical.

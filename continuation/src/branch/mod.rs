@@ -16,11 +16,12 @@ pub struct Point {
     pub s: f64,
     /// Value of the continued parameter.
     pub p: f64,
-    /// The unknowns.
+    /// The unknowns, of length [`crate::Problem::dim`].
     pub u: Vec<f64>,
     /// dp/ds: the parameter's component of the unit tangent, oriented along the branch.
     pub dp_ds: f64,
-    /// Number of unstable modes; `None` when the problem does not say what stability means.
+    /// Number of unstable modes; at a special point the smaller of the numbers before and after.
+    /// `None` when the problem does not say what stability means.
     pub unstable: Option<usize>,
     /// Whether that number is certain: from the inertia or from the full spectrum, and not from a
     /// few eigenvalues found by iteration.
@@ -31,20 +32,20 @@ pub struct Point {
     pub eigenvalues: Vec<(f64, f64)>,
     /// Observables, in the order of [`crate::Problem::observables`].
     pub observables: Vec<f64>,
-    /// Index into [`Branch::events`] when this point is a special point.
+    /// Index into [`Branch::events`] when this point is a special point or a landing.
     pub event: Option<usize>,
 }
 
-/// Why a branch ended.
+/// Why a branch ended; [`crate::guide::troubleshooting`] says what to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum StopReason {
-    /// The parameter reached its target.
+    /// The parameter reached its target, or an observable the value at which the trace was to stop.
     Target,
     /// The branch came back to its start in the same direction.
     ClosedLoop,
-    /// The branch left the allowed range of the parameter.
+    /// The parameter met a bound of its domain, where the last point is.
     Domain,
     /// The largest number of points was reached.
     MaxPoints,

@@ -11,12 +11,14 @@ pub(crate) use locate::{Located, bend, interpolate, locate};
 
 use serde::{Deserialize, Serialize};
 
-/// A scalar function to watch along a branch.
+/// A scalar function to watch along a branch; see [`crate::Tracer::watching`]. The start of the branch
+/// does not count.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Watch {
-    /// An observable takes this value.
+    /// An observable takes this value: an event [`Zero`](crate::EventKind::Zero) if that is 0, else
+    /// [`Named`](crate::EventKind::Named).
     Value {
         /// Name of the observable.
         observable: String,
@@ -25,12 +27,13 @@ pub enum Watch {
         /// Whether the trace ends there.
         stop: bool,
     },
-    /// An observable has a minimum or maximum along the branch.
+    /// An observable has a minimum or maximum along the branch: an event
+    /// [`Minimum`](crate::EventKind::Minimum) or [`Maximum`](crate::EventKind::Maximum).
     Extremum {
         /// Name of the observable.
         observable: String,
     },
-    /// The parameter takes this value.
+    /// The parameter takes this value: an event [`Target`](crate::EventKind::Target), every time.
     Parameter {
         /// The value, met exactly.
         value: f64,

@@ -58,7 +58,8 @@ pub struct Facts {
     /// Sign of the determinant of the factors. Where a pivot had to be replaced
     /// (`perturbed > 0`) it says nothing about the matrix itself, but together with Schur
     /// complements from the same factors it gives the sign of a regular bordered determinant.
-    /// `None` if the method does not know it.
+    /// `None` if the method does not know it; the tracer, which needs the orientation of the branch,
+    /// then refuses every step.
     pub det_sign: Option<i8>,
     /// Numbers of (negative, positive) eigenvalues of the factors, for symmetric matrices;
     /// with the same proviso.
@@ -70,10 +71,13 @@ pub struct Facts {
 }
 
 /// A square matrix that can be factored and solved with; entries survive [`Matrix::factor`].
+///
+/// All vectors have length [`Matrix::dim`]. Nothing fails: a singular matrix is factored with its
+/// small pivots replaced, and [`Facts::perturbed`] says so.
 pub trait Matrix: Clone + Send {
     /// Number of rows and columns.
     fn dim(&self) -> usize;
-    /// Sets all entries to zero, keeping the pattern.
+    /// Sets all entries to zero, keeping the pattern. Factors stay.
     fn set_zero(&mut self);
     /// `y = A x`.
     fn mul(&self, x: &[f64], y: &mut [f64]);
@@ -85,7 +89,7 @@ pub trait Matrix: Clone + Send {
     fn norm(&self) -> f64;
     /// Factors the current entries. Pivots smaller than `floor` in magnitude are replaced by it.
     fn factor(&mut self, floor: f64) -> Facts;
-    /// Solves `A x = b` in place with the latest factors.
+    /// Solves `A x = b` in place with the latest factors; `x` is `b` at first.
     fn solve(&mut self, x: &mut [f64]);
     /// Solves `Aᵀ x = b` in place with the latest factors.
     fn solve_transpose(&mut self, x: &mut [f64]);

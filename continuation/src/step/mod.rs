@@ -15,7 +15,7 @@ pub(crate) use weights::{Weights, dot};
 
 use crate::problem::EvalError;
 
-/// Why a step was refused.
+/// Why a step was refused; [`crate::guide::troubleshooting`] says what to do where that ends a trace.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {
@@ -34,13 +34,13 @@ pub enum Refusal {
     /// The solution found is too far from the predicted one.
     #[error("the solution is far from the prediction ({ratio:.2} of the step)")]
     FarFromPrediction {
-        /// Distance over step length.
+        /// First correction over step length, in the scaled metric.
         ratio: f64,
     },
     /// The tangent turns too much.
     #[error("the branch turns by {angle:.2} radians in one step")]
     Turn {
-        /// Angle in radians.
+        /// Angle in radians, in the scaled metric.
         angle: f64,
     },
     /// The orientation of the branch changed: a branch point, a jump or a reversal.

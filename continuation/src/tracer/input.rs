@@ -5,7 +5,7 @@ use crate::problem::{Parameter, Problem};
 use crate::settings::{Settings, SettingsError};
 use crate::step::Refusal;
 
-/// Why a trace could not begin.
+/// Why a trace could not begin; [`crate::guide::troubleshooting`] says what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TraceError {
@@ -55,7 +55,7 @@ pub enum TraceError {
         /// What does not fit.
         what: &'static str,
     },
-    /// The branch has no tangent at the start.
+    /// The branch has no tangent at the start, or an observable has no value there.
     #[error("no tangent at the start: {0}")]
     Tangent(Refusal),
 }
@@ -69,7 +69,7 @@ pub struct Progress {
     pub events: usize,
     /// Value of the continued parameter.
     pub p: f64,
-    /// Arclength so far.
+    /// Arclength so far, in the problem's metric.
     pub s: f64,
 }
 

@@ -34,7 +34,10 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use switching::Departure;
 
-/// Traces one branch; yields its points in order, special points included.
+/// Traces one branch; yields its points in order, special points included, the start first.
+///
+/// Work is done when the next point is asked for. After the last point [`Tracer::stopped`] says why
+/// the trace ended.
 pub struct Tracer<'a, P: Problem> {
     core: Core<'a, P>,
     settings: Settings,
@@ -77,8 +80,12 @@ fn detector<P: Problem>(
 impl<'a, P: Problem> Tracer<'a, P> {
     /// Prepares a trace of the branch through the solution near `u` in the named parameter.
     ///
+    /// `u` has length [`Problem::dim`], `p` holds the values of all parameters, of which all but the
+    /// named one stay. Newton's method ([`newton()`]) leads from `u` to the first point.
+    ///
     /// # Errors
-    /// When the input is unusable or there is no solution near `u`.
+    /// When the input is unusable, there is no solution near `u`, or the branch has no tangent there
+    /// (at a fold or branch point).
     pub fn new(
         problem: &'a P,
         parameter: &str,
@@ -162,10 +169,10 @@ impl<'a, P: Problem> Tracer<'a, P> {
         Ok(tracer)
     }
 
-    /// Watches for further special points.
+    /// Watches for further special points, in place of those of an earlier call.
     ///
     /// # Errors
-    /// When an observable is unknown.
+    /// When an observable is unknown, or has no value at the start.
     pub fn watching(mut self, watches: &[Watch]) -> Result<Self, TraceError> {
         let problem = self.core.problem;
         self.detector = detector(problem, watches, &self.settings)?;
@@ -193,8 +200,8 @@ impl<'a, P: Problem> Tracer<'a, P> {
         self.core.statistics
     }
 
-    /// Traces to the end and collects the branch. The observer may stop it; nothing computed
-    /// is lost.
+    /// Traces to the end and collects the branch. The observer is called after every point and may
+    /// stop the trace; nothing computed is lost, so that points of the last step may still follow.
     pub fn run(mut self, observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Branch {
         let mut points = Vec::new();
         while let Some(point) = self.next() {

@@ -24,7 +24,9 @@ pub(super) struct Departure {
 impl<'a, P: Problem> Tracer<'a, P> {
     /// Prepares a trace of a branch that leaves `branch` at one of its branch points, along
     /// `direction`, one of [`crate::Crossing::leaving`], or against it. The first point is the
-    /// branch point itself.
+    /// branch point itself. The parameters other than the continued one have their values of
+    /// `branch`; `settings` are those of the new trace. The first step is not searched for special
+    /// points.
     ///
     /// ```
     /// use continuation::{DenseProblem, Settings, Tracer};
