@@ -100,7 +100,7 @@ fn unusable_starts_are_refused_with_a_reason() {
     assert!(matches!(refuse(&other, "lambda"), Some(CurveError::Foreign { .. })));
 }
 
-fn co_oxidation() -> DenseProblem<impl Fn(&[f64], &[f64], &mut [f64])> {
+fn co_oxidation() -> impl Problem {
     DenseProblem::from_residual(3, &["p", "k"], |u, p, r| {
         let [x, y, s] = [u[0], u[1], u[2]];
         let z = 1.0 - x - y - s;
