@@ -1,6 +1,7 @@
 #![doc = include_str!("../docs/tour.md")]
 
 pub mod branch;
+pub mod codim2;
 mod dense_problem;
 mod derivative_check;
 #[cfg(feature = "dual")]
@@ -29,7 +30,7 @@ pub use events::Watch;
 pub use linalg::{Facts, Matrix};
 pub use modes::{Modes, modes};
 pub use newton::{NewtonError, NewtonReport, NewtonSettings, newton};
-pub use problem::{EvalError, ParamId, Parameter, Problem, Stability};
+pub use problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints, Stability};
 pub use settings::{Settings, SettingsError};
 pub use step::Refusal;
 pub use tracer::{Progress, TraceError, Tracer};

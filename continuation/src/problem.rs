@@ -1,5 +1,6 @@
 //! What a user writes: residual, Jacobian, parameter derivative, and what stability means.
 
+use crate::branch::EventKind;
 use crate::linalg::Matrix;
 
 /// A parameter of a problem.
@@ -145,6 +146,12 @@ pub trait Problem {
         0
     }
 
+    /// How branches are read whose points are special points of another problem
+    /// ([`crate::codim2`]); `None` (the default) where they are equilibria.
+    fn special_points(&self) -> Option<&dyn SpecialPoints> {
+        None
+    }
+
     /// Names of the scalar functions of a state that are reported at every point and on which
     /// events can be placed ([`crate::Watch`]).
     fn observables(&self) -> &[&'static str] {
@@ -178,6 +185,41 @@ pub trait Problem {
         let _ = (k, u, p, which, du, dp);
         Ok(None)
     }
+}
+
+/// How a branch is read whose points are special points of another problem.
+///
+/// The eigenvalues of its Jacobian mean nothing, and where it turns in its parameter nothing
+/// happens: neither makes an event. Those of the other problem do.
+pub trait SpecialPoints {
+    /// The eigenvalues of the other problem at a point, those that make it special left out.
+    ///
+    /// # Errors
+    /// Where that problem has no value.
+    fn others(&self, u: &[f64], p: &[f64]) -> Result<Others, EvalError>;
+
+    /// What a zero of an observable is, if it is a special point.
+    fn zero(&self, observable: usize) -> Option<EventKind>;
+
+    /// Estimated error of an observable that is computed by differences, at the latest point.
+    fn error(&self, observable: usize) -> f64 {
+        let _ = observable;
+        0.0
+    }
+
+    /// What it is when a pair of the other eigenvalues crosses the imaginary axis.
+    fn crossing_pair(&self) -> EventKind;
+}
+
+/// The eigenvalues beside the critical ones.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Others {
+    /// Number of unstable ones; `None` if it is not known.
+    pub unstable: Option<usize>,
+    /// Whether the number and the list are complete.
+    pub certified: bool,
+    /// The eigenvalues, (real, imaginary) parts, as far as they are known.
+    pub values: Vec<(f64, f64)>,
 }
 
 /// The first component that is not finite, as an error.

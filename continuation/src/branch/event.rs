@@ -13,6 +13,16 @@ pub enum EventKind {
     BranchPoint,
     /// A pair of complex eigenvalues crosses the imaginary axis.
     Hopf,
+    /// Two folds meet and vanish: the quadratic coefficient of a fold is zero.
+    Cusp,
+    /// A double eigenvalue zero with one eigenvector: a fold and a Hopf point meet.
+    BogdanovTakens,
+    /// A fold at which a pair of eigenvalues crosses the imaginary axis.
+    ZeroHopf,
+    /// A Hopf point whose first Lyapunov coefficient is zero.
+    GeneralisedHopf,
+    /// A Hopf point at which a second pair of eigenvalues crosses the imaginary axis.
+    DoubleHopf,
     /// A zero of the named observable.
     Zero(String),
     /// A local minimum of the named observable along the branch.
@@ -33,6 +43,11 @@ impl fmt::Display for EventKind {
             EventKind::Fold => write!(f, "fold"),
             EventKind::BranchPoint => write!(f, "branch-point"),
             EventKind::Hopf => write!(f, "hopf"),
+            EventKind::Cusp => write!(f, "cusp"),
+            EventKind::BogdanovTakens => write!(f, "bogdanov-takens"),
+            EventKind::ZeroHopf => write!(f, "zero-hopf"),
+            EventKind::GeneralisedHopf => write!(f, "generalised-hopf"),
+            EventKind::DoubleHopf => write!(f, "double-hopf"),
             EventKind::Zero(name) => write!(f, "zero-{name}"),
             EventKind::Minimum(name) => write!(f, "{name}-minimum"),
             EventKind::Maximum(name) => write!(f, "{name}-maximum"),

@@ -68,6 +68,8 @@ pub(crate) struct Detector {
     // largest magnitude of each observable so far: below a tiny fraction of it is noise
     magnitude: Vec<f64>,
     found: Vec<Candidate>,
+    // whether the branch consists of special points of another problem
+    extended: bool,
 }
 
 /// Whether `a → b` passes zero; an exact zero belongs to the step that arrives at it.
@@ -94,6 +96,7 @@ impl Detector {
         observables: &[&'static str],
         target: Option<f64>,
         domain: Option<(f64, f64)>,
+        extended: bool,
     ) -> Result<Self, String> {
         let index =
             |name: &String| observables.iter().position(|o| o == name).ok_or_else(|| name.clone());
@@ -119,7 +122,7 @@ impl Detector {
             watched.push(Candidate::Parameter { value: hi, role: Role::Bound });
         }
         let found = Vec::with_capacity(watched.len() + 2);
-        Ok(Detector { watched, magnitude: vec![0.0; observables.len()], found })
+        Ok(Detector { watched, magnitude: vec![0.0; observables.len()], found, extended })
     }
 
     /// The observables that are watched.
@@ -157,18 +160,22 @@ impl Detector {
         // where the parameter stands still to rounding, its turns are noise
         let vertical = a.tp.abs().max(b.tp.abs()) < VERTICAL * range;
         let into_noise = b.tp.abs() < NOISE * range;
-        if into_noise && !vertical && !final_say {
+        if into_noise && !vertical && !final_say && !self.extended {
             return Err(Refusal::Unresolved);
         }
         let fold = crosses(a.tp, b.tp) && !vertical && !into_noise;
         if !final_say && !vertical && self.parameter_unresolved(&p) {
             return Err(Refusal::Unresolved);
         }
-        if fold {
-            self.found.push(Candidate::Fold);
-        }
-        if !vertical {
-            self.detect_crossings(a, b, fold, final_say)?;
+        if self.extended {
+            self.detect_beside_critical(a, b, final_say)?;
+        } else {
+            if fold {
+                self.found.push(Candidate::Fold);
+            }
+            if !vertical {
+                self.detect_crossings(a, b, fold, final_say)?;
+            }
         }
         for k in 0..self.watched.len() {
             let candidate = self.watched[k];
@@ -259,6 +266,32 @@ impl Detector {
         };
         if kernel > 0 {
             self.found.push(Candidate::BranchPoint { kernel });
+        }
+        Ok(())
+    }
+
+    /// On a curve of special points: branch points of the curve, and pairs of eigenvalues beside
+    /// the critical ones that cross the imaginary axis.
+    fn detect_beside_critical(
+        &mut self,
+        a: &State,
+        b: &State,
+        final_say: bool,
+    ) -> Result<(), Refusal> {
+        if a.orientation * b.orientation < 0 {
+            self.found.push(Candidate::BranchPoint { kernel: 1 });
+        }
+        let change = match (a.count, b.count) {
+            (Some(before), Some(after)) => before.abs_diff(after),
+            _ => 0,
+        };
+        if change < 2 {
+            return Ok(());
+        }
+        if crosses(a.pair, b.pair) && change == 2 && a.pairs == b.pairs {
+            self.found.push(Candidate::Hopf);
+        } else if a.certified && b.certified && !final_say {
+            return Err(Refusal::Stability);
         }
         Ok(())
     }

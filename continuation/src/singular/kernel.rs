@@ -159,7 +159,7 @@ impl Frame {
 }
 
 /// Numbers without any pattern, in (-1, 1), always the same.
-pub(super) fn arbitrary(seed: usize, i: usize) -> f64 {
+pub(crate) fn arbitrary(seed: usize, i: usize) -> f64 {
     let x =
         ((i + 1) as f64 * 0.754_877_666_246_692_7 + seed as f64 * 0.569_840_290_998_053_2).fract();
     2.0 * (x * 1e4).fract() - 1.0

@@ -16,6 +16,7 @@ mod small;
 
 pub(crate) use fold::fold_form;
 pub(crate) use hopf::locate_hopf;
+pub(crate) use kernel::arbitrary;
 pub(crate) use probe::{Extended, Probe};
 
 use crate::branch::Crossing;

@@ -237,7 +237,8 @@ impl<'a, P: Problem> Core<'a, P> {
         }
         let Some(facts) = self.facts else { return Err(Refusal::Singular) };
         x.orientation = facts.det_sign.unwrap_or(0);
-        self.stability.judge(self.problem, &mut self.jacobian, facts.core.inertia, x);
+        let at = (self.which, &mut self.p[..]);
+        self.stability.judge(self.problem, &mut self.jacobian, facts.core.inertia, at, x);
         self.observe(x).map_err(Refusal::Evaluation)
     }
 

@@ -5,7 +5,7 @@
 
 use super::State;
 use crate::modes::ModeSolver;
-use crate::problem::{Problem, Stability};
+use crate::problem::{ParamId, Problem, Stability};
 
 /// Eigenvalues computed at every point where nothing else tells the stability.
 const FEW: usize = 10;
@@ -40,11 +40,22 @@ impl<P: Problem> StabilityCount<P> {
         problem: &P,
         jacobian: &mut P::Jacobian,
         inertia: Option<(usize, usize)>,
+        (which, p): (ParamId, &mut [f64]),
         x: &mut State,
     ) {
         (x.unstable, x.count, x.certified) = (None, None, false);
         (x.pair, x.frequency, x.pairs) = (f64::NAN, f64::NAN, 0);
         x.eigenvalues.clear();
+        if let Some(curve) = problem.special_points() {
+            p[which.0] = x.p;
+            if let Ok(others) = curve.others(&x.u, p) {
+                self.read(&others.values, false, x);
+                (x.count, x.unstable) = (others.unstable, others.unstable);
+                x.certified = others.certified;
+                self.solver.pick(others.values, &mut x.eigenvalues);
+            }
+            return;
+        }
         let energy = self.sense == Stability::EnergyHessian;
         if let Some((negative, positive)) = inertia {
             x.count = Some(if energy { negative } else { positive });

@@ -66,6 +66,17 @@ pub struct Tracer<'a, P: Problem> {
     stop: Option<Stop>,
 }
 
+fn detector<P: Problem>(
+    problem: &P,
+    watches: &[Watch],
+    settings: &Settings,
+) -> Result<Detector, TraceError> {
+    let (target, domain) = (settings.target, settings.domain);
+    let extended = problem.special_points().is_some();
+    Detector::new(watches, problem.observables(), target, domain, extended)
+        .map_err(|name| unknown_observable(problem, name))
+}
+
 impl<'a, P: Problem> Tracer<'a, P> {
     /// Prepares a trace of the branch through the solution near `u` in the named parameter.
     ///
@@ -127,8 +138,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
     ) -> Result<Self, TraceError> {
         let problem = core.problem;
         let size = StepSize::new(&settings, range / core.weights.parameter, start.length);
-        let detector = Detector::new(&[], problem.observables(), settings.target, settings.domain)
-            .map_err(|name| unknown_observable(problem, name))?;
+        let detector = detector(problem, &[], &settings)?;
         let mut tracer = Tracer {
             core,
             settings,
@@ -165,13 +175,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
     /// When an observable is unknown, or has no value at the start.
     pub fn watching(mut self, watches: &[Watch]) -> Result<Self, TraceError> {
         let problem = self.core.problem;
-        self.detector = Detector::new(
-            watches,
-            problem.observables(),
-            self.settings.target,
-            self.settings.domain,
-        )
-        .map_err(|name| unknown_observable(problem, name))?;
+        self.detector = detector(problem, watches, &self.settings)?;
         self.core
             .want(self.detector.observables(), &mut self.start)
             .map_err(|error| TraceError::Tangent(Refusal::Evaluation(error)))?;

@@ -102,7 +102,7 @@ impl<P: Problem> Tracer<'_, P> {
         let Self { core, current: a, trial: b, work, settings, .. } = self;
         let tolerance = settings.event_tolerance;
         let (place, detail) = match *candidate {
-            Candidate::Hopf => {
+            Candidate::Hopf if core.problem.special_points().is_none() => {
                 let place = locate(core, a, b, h, candidate, BRACKET * h, work)?;
                 let (at, omega) = (place.at, work.frequency);
                 match locate_hopf(core, a, b, h, at, omega, work)? {
@@ -149,6 +149,7 @@ impl<P: Problem> Tracer<'_, P> {
             Candidate::Fold | Candidate::BranchPoint { .. } | Candidate::Hopf => {
                 self.trial.unstable
             }
+            _ if self.core.problem.special_points().is_some() => self.trial.unstable,
             _ => before,
         };
         self.running_unstable = after;
@@ -169,7 +170,7 @@ impl<P: Problem> Tracer<'_, P> {
                 unstable_before: before,
                 unstable_after: after,
                 residual,
-                error_estimate: place.error * state.length,
+                error_estimate: (place.error + self.uncertainty(candidate, state)) * state.length,
                 detail: detail.clone(),
             });
         }
@@ -188,8 +189,29 @@ impl<P: Problem> Tracer<'_, P> {
         Ok(())
     }
 
+    /// By how much the error of an observable itself moves its zero, as a scaled length.
+    fn uncertainty(&self, candidate: &Candidate, state: &State) -> f64 {
+        match (self.core.problem.special_points(), candidate) {
+            (Some(curve), &Candidate::Value { observable, .. }) => {
+                let moved = curve.error(observable) / state.slopes[observable].abs();
+                if moved.is_finite() { moved } else { 0.0 }
+            }
+            _ => 0.0,
+        }
+    }
+
     /// What a candidate is called; `None` for a point that is no event.
     fn kind(&self, candidate: &Candidate) -> Option<EventKind> {
+        if let Some(curve) = self.core.problem.special_points() {
+            let special = match *candidate {
+                Candidate::Hopf => Some(curve.crossing_pair()),
+                Candidate::Value { observable, level: 0.0, .. } => curve.zero(observable),
+                _ => None,
+            };
+            if special.is_some() {
+                return special;
+            }
+        }
         let name = |observable: usize| self.core.problem.observables()[observable].to_owned();
         match *candidate {
             Candidate::Fold => Some(EventKind::Fold),
