@@ -131,6 +131,7 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
             return;
         }
         let here = match i.checked_sub(self.n) {
+            None if scratch.u[i] != 0.0 => scratch.u[i].abs(),
             None => max_abs(&scratch.u),
             Some(k) => scratch.p[k].abs().max(self.parameters[k].scale.abs()),
         };
@@ -185,12 +186,8 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
             let difference = (sixth - fourth).abs();
             apart = if difference.is_nan() { f64::INFINITY } else { apart.max(difference) };
         }
-        let terms = values.iter().map(|v| max_abs(v)).fold(0.0, f64::max);
         if !apart.is_finite() {
             return f64::INFINITY;
-        }
-        if apart > 0.0 && apart <= 64.0 * f64::EPSILON * terms / h {
-            return 0.5 * AGREEMENT; // rounding: nothing is wrong with the length
         }
         // a derivative that vanishes exactly says nothing for or against the length, and one that
         // is about to vanish little

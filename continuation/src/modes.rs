@@ -126,7 +126,11 @@ impl<P: Problem> ModeSolver<P> {
         }
         let spectrum = self.spectrum(jacobian);
         let certain = spectrum.is_some();
-        self.pick(spectrum.unwrap_or_else(|| self.few(problem, jacobian, self.wanted)), values);
+        let spectrum = match spectrum {
+            Some(plain) => self.weighted(problem, jacobian).unwrap_or(plain),
+            None => self.few(problem, jacobian, self.wanted),
+        };
+        self.pick(spectrum, values);
         certain
     }
 
@@ -136,6 +140,26 @@ impl<P: Problem> ModeSolver<P> {
             self.sort(&mut spectrum);
             values.extend(spectrum.into_iter().take(self.wanted));
         }
+    }
+
+    /// The full spectrum of an energy's Hessian against the metric, where that is not the identity
+    /// and no mass matrix takes its place; only where eigenvalues are wanted.
+    pub(crate) fn weighted(&self, problem: &P, jacobian: &P::Jacobian) -> Option<Vec<(f64, f64)>> {
+        let energy = self.sense == Stability::EnergyHessian;
+        if self.wanted == 0 || !energy || self.mass.is_some() {
+            return None;
+        }
+        let n = jacobian.dim();
+        let mut metric = Dense::new(n);
+        let mut unit = vec![0.0; n];
+        let mut identity = true;
+        for j in 0..n {
+            unit[j] = 1.0;
+            problem.metric(&unit, metric.column_mut(j));
+            identity &= metric.column(j) == unit;
+            unit[j] = 0.0;
+        }
+        if identity { None } else { dense(jacobian).spectrum(Some(&metric)) }
     }
 
     /// At least `count` eigenvalues nearest to zero, by iteration with the factors.

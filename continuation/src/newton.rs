@@ -99,8 +99,12 @@ pub fn newton<P: Problem>(
     let mut damping = 1.0_f64;
     let (mut last, mut longest) = (f64::INFINITY, 0.0_f64);
     for iterations in 1..=settings.max_iterations {
-        problem.linearise(u, p, &mut r, &mut jacobian).map_err(NewtonError::Start)?;
-        crate::problem::check_finite(&r).map_err(NewtonError::Start)?;
+        let refuse = |error| match iterations {
+            1 => NewtonError::Start(error),
+            _ => NewtonError::Stuck { iterations, correction: last, cause: Some(error) },
+        };
+        problem.linearise(u, p, &mut r, &mut jacobian).map_err(refuse)?;
+        crate::problem::check_finite(&r).map_err(refuse)?;
         let floor = f64::EPSILON * jacobian.norm();
         let facts = jacobian.factor(floor);
         if facts.perturbed > 0 && r.iter().any(|x| *x != 0.0) {

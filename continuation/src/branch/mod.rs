@@ -119,7 +119,8 @@ pub struct Branch {
 
 impl Branch {
     /// The special points of one kind, in order along the branch.
-    pub fn events_of<'b>(&'b self, kind: &'b EventKind) -> impl Iterator<Item = &'b Event> {
-        self.events.iter().filter(move |e| e.kind == *kind)
+    pub fn events_of<'b>(&'b self, kind: &EventKind) -> impl Iterator<Item = &'b Event> + use<'b> {
+        let kind = kind.clone();
+        self.events.iter().filter(move |e| e.kind == kind)
     }
 }

@@ -118,8 +118,9 @@ impl Detector {
             watched.push(Candidate::Parameter { value, role: Role::Target });
         }
         if let Some((lo, hi)) = domain {
-            watched.push(Candidate::Parameter { value: lo, role: Role::Bound });
-            watched.push(Candidate::Parameter { value: hi, role: Role::Bound });
+            for value in [lo, hi].into_iter().filter(|bound| bound.is_finite()) {
+                watched.push(Candidate::Parameter { value, role: Role::Bound });
+            }
         }
         let found = Vec::with_capacity(watched.len() + 2);
         Ok(Detector { watched, magnitude: vec![0.0; observables.len()], found, extended })
@@ -294,6 +295,15 @@ impl Detector {
             return Err(Refusal::Stability);
         }
         Ok(())
+    }
+
+    /// Whether a watched value of the parameter is passed on the way from `a` to `fold`, and so is
+    /// passed again, or not seen, in the same step.
+    pub(crate) fn passes_before(&self, a: f64, fold: f64) -> bool {
+        self.watched.iter().any(|candidate| match candidate {
+            Candidate::Parameter { value, .. } => crosses(a - value, fold - value),
+            _ => false,
+        })
     }
 
     /// What the latest [`Detector::detect`] found.

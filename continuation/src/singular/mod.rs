@@ -175,6 +175,7 @@ fn attempt<P: Problem>(
     // a residual no larger than that of a converged state says nothing of a gap
     let noise = 8.0 * (a.u.len() as f64).sqrt() * core.residual(a).map_err(Failure::Evaluation)?;
     let gap = if found.unfolding > noise { found.gap } else { 0.0 };
+    x.certified = a.certified && b.certified;
     let error = found.correction.max(gap).max(f64::EPSILON);
     Ok(Crossed { at, error, crossing: analysed.crossing, state: x.clone() })
 }

@@ -8,7 +8,7 @@
 use super::stability::StabilityCount;
 use super::{Refusal, State, Weights};
 use crate::branch::Statistics;
-use crate::linalg::{Bordered, BorderedFacts, max_abs};
+use crate::linalg::{Bordered, BorderedFacts, Matrix, max_abs};
 use crate::problem::{EvalError, ParamId, Problem, check_finite};
 use crate::settings::Settings;
 use crate::singular::{Extended, Probe};
@@ -352,6 +352,14 @@ impl<'a, P: Problem> Core<'a, P> {
         (x.p, x.tp) = (z.p, tangent.p);
         if self.normalise(x).is_err() {
             return Err(EvalError::NotFinite { at: 0 });
+        }
+        x.eigenvalues.clear();
+        if self.stability.wants_eigenvalues() {
+            self.assemble(&x.u, x.p)?;
+            let floor = f64::EPSILON * self.jacobian.norm();
+            let inertia = self.jacobian.factor(floor).inertia;
+            let values = &mut x.eigenvalues;
+            self.stability.eigenvalues(self.problem, &mut self.jacobian, inertia, values);
         }
         self.observe(x)
     }

@@ -29,13 +29,14 @@ impl StepSize {
 
     /// Longest scaled step where the tangent has this length in the problem's metric.
     pub(crate) fn longest(&self, length: f64) -> f64 {
-        let default = 0.05 * self.range;
-        self.longest.map_or(default, |s| s / length)
+        let least = self.shortest.map_or(0.0, |s| s / length);
+        self.longest.map_or((0.05 * self.range).max(least), |s| s / length)
     }
 
     /// Shortest scaled step.
     pub(crate) fn shortest(&self, length: f64) -> f64 {
-        self.shortest.map_or(1e-7 * self.range, |s| s / length)
+        let most = self.longest.map_or(f64::INFINITY, |s| 1e-3 * s / length);
+        self.shortest.map_or((1e-7 * self.range).min(most), |s| s / length)
     }
 
     /// Below this scaled length a step is so short that what it still shows is real.

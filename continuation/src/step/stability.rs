@@ -34,6 +34,17 @@ impl<P: Problem> StabilityCount<P> {
         self.wanted > 0
     }
 
+    /// The eigenvalues that are reported, of a factored Jacobian.
+    pub(crate) fn eigenvalues(
+        &mut self,
+        problem: &P,
+        jacobian: &mut P::Jacobian,
+        inertia: Option<(usize, usize)>,
+        values: &mut Vec<(f64, f64)>,
+    ) {
+        self.solver.solve(problem, jacobian, inertia, values);
+    }
+
     /// Sets the counts at `x`, whose Jacobian is factored.
     pub(crate) fn judge(
         &mut self,
@@ -64,7 +75,8 @@ impl<P: Problem> StabilityCount<P> {
         } else if let Some(spectrum) = self.solver.spectrum(jacobian) {
             self.read(&spectrum, energy, x);
             x.certified = true;
-            self.solver.pick(spectrum, &mut x.eigenvalues);
+            let reported = self.solver.weighted(problem, jacobian).unwrap_or(spectrum);
+            self.solver.pick(reported, &mut x.eigenvalues);
         } else if self.sense != Stability::None {
             let few = self.solver.few(problem, jacobian, FEW.max(self.wanted));
             self.read(&few, energy, x);

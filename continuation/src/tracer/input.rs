@@ -77,7 +77,10 @@ pub struct Progress {
 pub(super) fn range(settings: &Settings, start: f64, parameter: &Parameter) -> f64 {
     match (settings.target, settings.domain) {
         (Some(target), _) if target != start => (target - start).abs(),
-        (_, Some((lo, hi))) => hi - lo,
+        (_, Some((lo, hi))) if (hi - lo).is_finite() => hi - lo,
+        // bounded on one side only: the way to the bound
+        (_, Some((lo, _))) if lo.is_finite() && lo != start => (start - lo).abs(),
+        (_, Some((_, hi))) if hi.is_finite() && hi != start => (hi - start).abs(),
         _ => parameter.scale.abs().max(f64::MIN_POSITIVE),
     }
 }

@@ -26,7 +26,7 @@ use crate::branch::{Branch, Event, Point, Statistics, Stop, StopReason};
 use crate::events::{Detector, Watch};
 use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem};
-use crate::settings::Settings;
+use crate::settings::{Settings, SettingsError};
 use crate::step::{Constraint, Core, Precision, Refusal, State, StepSize, Weights, judge};
 use input::{check, range, unknown_observable};
 use special::Special;
@@ -109,6 +109,13 @@ impl<'a, P: Problem> Tracer<'a, P> {
             .map_err(TraceError::Start)?;
 
         let range = range(&settings, start.p, &parameters[which]);
+        if let Some((lo, hi)) = settings.domain
+            && !(lo..=hi).contains(&start.p)
+        {
+            let allowed = "an interval that holds the start of the parameter";
+            let value = if start.p < lo { lo } else { hi };
+            return Err(SettingsError { key: "domain", value, allowed }.into());
+        }
         let increasing = settings
             .increasing
             .unwrap_or_else(|| settings.target.is_none_or(|target| target > start.p));
@@ -166,6 +173,13 @@ impl<'a, P: Problem> Tracer<'a, P> {
         tracer.detector.learn(&tracer.start);
         let first = tracer.point(&tracer.start, 0.0, None, tracer.start.unstable);
         tracer.queue.push_back(first);
+        if let Some((lo, hi)) = tracer.settings.domain {
+            let (p, way) = (tracer.start.p, tracer.start.tp);
+            if p == lo && way < 0.0 || p == hi && way > 0.0 {
+                let detail = "the branch leaves the domain at its start".to_owned();
+                tracer.end(StopReason::Domain, detail);
+            }
+        }
         Ok(tracer)
     }
 
@@ -204,6 +218,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
     /// stop the trace; nothing computed is lost, so that points of the last step may still follow.
     pub fn run(mut self, observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Branch {
         let mut points = Vec::new();
+        let mut interrupted = false;
         while let Some(point) = self.next() {
             let progress = Progress {
                 points: points.len() + 1,
@@ -212,8 +227,12 @@ impl<'a, P: Problem> Tracer<'a, P> {
                 s: point.s,
             };
             points.push(point);
-            if observer(&progress).is_break() && self.stop.is_none() {
-                self.end(StopReason::Interrupted, "interrupted".to_owned());
+            if !interrupted && observer(&progress).is_break() {
+                // what is computed already is still handed out
+                interrupted = true;
+                if self.stop.is_none() {
+                    self.end(StopReason::Interrupted, "interrupted".to_owned());
+                }
             }
         }
         let problem = self.core.problem;
@@ -241,7 +260,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             u: x.u.clone(),
             dp_ds: x.tp / x.length,
             unstable,
-            certified: unstable.is_some() && self.current.certified,
+            certified: unstable.is_some() && x.certified,
             eigenvalues: x.eigenvalues.clone(),
             observables: x.values.clone(),
             event,

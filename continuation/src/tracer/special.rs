@@ -49,6 +49,13 @@ impl<P: Problem> Tracer<'_, P> {
                 located.push(self.locate_one(h, candidate)?);
             }
         }
+        // a value passed shortly before the fold is passed again behind it: one step for each
+        let before = |l: &Special| {
+            l.candidate == Candidate::Fold && self.detector.passes_before(self.current.p, l.state.p)
+        };
+        if !final_say && located.iter().any(before) {
+            return Err(Refusal::SeveralEvents);
+        }
         located.sort_by(|a, b| a.place.at.total_cmp(&b.place.at));
         if let Some(end) = located.iter().position(|l| l.candidate.ends_trace()) {
             located.truncate(end + 1);

@@ -164,9 +164,11 @@ impl<'a, P: Problem> Tracer<'a, P> {
         if on_old >= along || turned >= tangents {
             return Err(Refusal::OldBranch);
         }
+        self.detector.detect(current, trial, h, core.weights.parameter, false)?;
         let s_trial = self.metric_distance();
+        let special = self.locate_all(h, false)?;
         self.running_unstable = self.trial.unstable;
-        self.accept(h, &[], s_trial, None)?;
+        self.accept(h, &special, s_trial, None)?;
         let length = self.current.length;
         self.size.accept(h, &quality, &self.settings, length);
         Ok(())

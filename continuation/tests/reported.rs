@@ -1,0 +1,181 @@
+//! Failures that were met in use; each test carries the name of what went wrong.
+
+#![allow(clippy::unwrap_used)]
+
+use continuation::linalg::Dense;
+use continuation::samples::{Bratu, Cusp};
+use continuation::{
+    Branch, DenseProblem, EventKind, Matrix, Problem, Settings, StopReason, Tracer, Watch, modes,
+};
+use std::ops::ControlFlow;
+
+fn cusp(settings: Settings, watches: &[Watch]) -> Branch {
+    Tracer::new(&Cusp, "mu", &[-1.5], &[-2.0, 1.0], settings)
+        .unwrap()
+        .watching(watches)
+        .unwrap()
+        .run(&mut |_| ControlFlow::Continue(()))
+}
+
+#[test]
+fn one_step_limit_alone() {
+    let settings = Settings { target: Some(2.0), max_points: 300, ..Settings::default() };
+    for (min_step, max_step) in [(Some(1.0), None), (None, Some(1e-9))] {
+        let branch = cusp(Settings { min_step, max_step, ..settings.clone() }, &[]);
+        assert!(branch.points.len() > 1);
+    }
+}
+
+#[test]
+fn domain_open_on_one_side() {
+    let settings =
+        Settings { domain: Some((-3.0, f64::INFINITY)), max_points: 500, ..Settings::default() };
+    let branch = cusp(settings, &[]);
+    assert_eq!(branch.events_of(&EventKind::Fold).count(), 2, "{:?}", branch.stopped);
+}
+
+#[test]
+fn domain_that_the_start_leaves_at_once_or_is_not_in() {
+    let settings =
+        Settings { domain: Some((-2.0, 1.0)), increasing: Some(false), ..Settings::default() };
+    let branch = cusp(settings, &[]);
+    assert_eq!((branch.stopped.reason, branch.points.len()), (StopReason::Domain, 1));
+    let settings = Settings { domain: Some((-1.0, 1.0)), ..Settings::default() };
+    let error = Tracer::new(&Cusp, "mu", &[-1.5], &[-2.0, 1.0], settings).err().unwrap();
+    assert!(error.to_string().contains("domain"), "{error}");
+}
+
+#[test]
+fn value_just_before_a_fold() {
+    let fold = 2.0 / (3.0 * 3f64.sqrt());
+    for distance in [1e-3, 1e-5, 1e-6, 1e-8] {
+        for max_step in [None, Some(0.1), Some(1.0)] {
+            let value = fold - distance;
+            let settings = Settings { target: Some(value), max_step, ..Settings::default() };
+            let end = cusp(settings, &[]).points.pop().unwrap();
+            assert!(end.u[0] < -1.0 / 3f64.sqrt(), "{distance:e} {max_step:?}: {:?}", end.u);
+            let settings = Settings { target: Some(2.0), max_step, ..Settings::default() };
+            let landings = cusp(settings, &[Watch::parameter(value)]);
+            let count = landings.events_of(&EventKind::Target).count();
+            assert_eq!(count, 3, "{distance:e} {max_step:?}");
+        }
+    }
+}
+
+#[test]
+fn first_step_away_from_a_branch_point_sees_events_too() {
+    let problem = DenseProblem::from_residual(1, &["p"], |x, p, r| r[0] = x[0] * (p[0] - x[0]))
+        .observing("x", |x, _| x[0]);
+    let settings = Settings { target: Some(1.0), ..Settings::default() };
+    let trunk = Tracer::new(&problem, "p", &[0.0], &[-1.0], settings)
+        .unwrap()
+        .run(&mut |_| ControlFlow::Continue(()));
+    let event = &trunk.events[0];
+    let direction = &event.crossing().unwrap().leaving[0];
+    let settings = Settings {
+        target: Some(0.2),
+        first_step: Some(0.6),
+        max_step: Some(1.0),
+        ..Settings::default()
+    };
+    let forward = direction.dp > 0.0;
+    let side = Tracer::leaving(&problem, &trunk, event, direction, forward, settings)
+        .unwrap()
+        .watching(&[Watch::Value { observable: "x".to_owned(), level: 0.1, stop: false }])
+        .unwrap()
+        .run(&mut |_| ControlFlow::Continue(()));
+    assert_eq!(side.stopped.reason, StopReason::Target, "{:?}", side.stopped);
+    assert_eq!(side.events.len(), 1);
+    assert!((side.events[0].p - 0.1).abs() < 1e-12);
+}
+
+#[test]
+fn unknowns_of_very_different_size() {
+    let fold = 2.0 / (3.0 * 3f64.sqrt());
+    for size in [1e-9, 1.0, 1e6, 1e9, 1e12] {
+        let problem = DenseProblem::from_residual(2, &["p"], move |u, p, r| {
+            r[0] = p[0] + u[0] - u[0].powi(3);
+            r[1] = u[1] / size - u[0];
+        });
+        let mut j = Dense::new(2);
+        problem.jacobian(&[-1.5, -1.5 * size], &[-2.0], &mut j).unwrap();
+        assert!((j.get(0, 0) + 5.75).abs() < 1e-10, "{size:e}: {}", j.get(0, 0));
+        assert!((j.get(1, 1) * size - 1.0).abs() < 1e-10, "{size:e}");
+        let settings = Settings { target: Some(2.0), ..Settings::default() };
+        let branch = Tracer::new(&problem, "p", &[-1.5, -1.5 * size], &[-2.0], settings)
+            .unwrap()
+            .run(&mut |_| ControlFlow::Continue(()));
+        let folds: Vec<f64> = branch.events_of(&EventKind::Fold).map(|e| e.p.abs()).collect();
+        assert_eq!(folds.len(), 2, "{size:e} {:?}", branch.stopped);
+        assert!(folds.iter().all(|p| (p / fold - 1.0).abs() < 1e-9), "{size:e} {folds:?}");
+    }
+}
+
+/// Bratu's problem again, its Jacobian dense.
+struct DenseBratu(Bratu);
+
+impl Problem for DenseBratu {
+    type Jacobian = Dense;
+    fn dim(&self) -> usize {
+        self.0.dim()
+    }
+    fn parameters(&self) -> &[continuation::Parameter] {
+        self.0.parameters()
+    }
+    fn new_jacobian(&self) -> Dense {
+        Dense::new(self.dim())
+    }
+    fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), continuation::EvalError> {
+        self.0.residual(u, p, r)
+    }
+    fn jacobian(&self, u: &[f64], p: &[f64], j: &mut Dense) -> Result<(), continuation::EvalError> {
+        let mut band = self.0.new_jacobian();
+        self.0.jacobian(u, p, &mut band)?;
+        let mut unit = vec![0.0; u.len()];
+        for k in 0..u.len() {
+            unit[k] = 1.0;
+            band.mul(&unit, j.column_mut(k));
+            unit[k] = 0.0;
+        }
+        Ok(())
+    }
+    fn parameter_derivative(
+        &self,
+        u: &[f64],
+        p: &[f64],
+        which: continuation::ParamId,
+        out: &mut [f64],
+    ) -> Result<(), continuation::EvalError> {
+        self.0.parameter_derivative(u, p, which, out)
+    }
+    fn metric(&self, x: &[f64], y: &mut [f64]) {
+        self.0.metric(x, y);
+    }
+    fn stability(&self) -> continuation::Stability {
+        self.0.stability()
+    }
+}
+
+#[test]
+fn modes_do_not_depend_on_the_storage() {
+    let (n, p) = (9, [0.5]);
+    let band = modes(&Bratu::new(n), &vec![0.1; n], &p, 3).unwrap();
+    let dense = modes(&DenseBratu(Bratu::new(n)), &vec![0.1; n], &p, 3).unwrap();
+    assert!(band.certified && dense.certified);
+    for (a, b) in band.values.iter().zip(&dense.values) {
+        assert!((a.0 / b.0 - 1.0).abs() < 1e-10, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn eigenvalues_at_a_branch_point_are_its_own() {
+    let problem =
+        DenseProblem::from_residual(1, &["p"], |x, p, r| r[0] = p[0] * x[0] - x[0].powi(3));
+    let settings = Settings { target: Some(1.0), eigenvalues: 1, ..Settings::default() };
+    let branch = Tracer::new(&problem, "p", &[0.0], &[-1.0], settings)
+        .unwrap()
+        .run(&mut |_| ControlFlow::Continue(()));
+    for point in &branch.points {
+        assert!((point.eigenvalues[0].0 - point.p).abs() < 1e-9, "{point:?}");
+    }
+}
