@@ -60,6 +60,8 @@ const STEP: f64 = 4e-3;
 const SHORTEST: f64 = 1e-8;
 /// Disagreement of the orders four and six above which the length is sought anew.
 const DISAGREEMENT: f64 = 1e-7;
+/// Decades beyond the magnitude at hand where a function that is flat there is not asked.
+const FARTHEST: i32 = 2;
 /// Disagreement that is good enough to stop looking for a better length.
 const AGREEMENT: f64 = 1e-9;
 
@@ -131,18 +133,26 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
             return;
         }
         let here = match i.checked_sub(self.n) {
-            None if scratch.u[i] != 0.0 => scratch.u[i].abs(),
-            None => max_abs(&scratch.u),
+            None => {
+                let (own, all) = (scratch.u[i].abs(), max_abs(&scratch.u));
+                // a value that is small beside the others may be rounding
+                let own = if own < 1e-6 * all { all } else { own };
+                if own < 1e-10 { 0.0 } else { own }
+            }
             Some(k) => scratch.p[k].abs().max(self.parameters[k].scale.abs()),
         };
         let here = here.max(known);
         let centre = if here > 0.0 { here } else { 1.0 };
         // lengths ever farther from the magnitude at hand; the one whose orders agree best wins
-        let mut least = f64::INFINITY;
-        for k in 0..25 {
+        let (mut least, mut flat) = (f64::INFINITY, false);
+        for k in 0..33 {
             let decades = if k % 2 == 0 { -k / 2 } else { k / 2 + 1 };
+            if flat && decades > FARTHEST {
+                continue;
+            }
             let length = centre * 10f64.powi(decades);
             let error = self.differ(scratch, i, length, out);
+            flat |= error == DISAGREEMENT;
             if error < least {
                 least = error;
                 scratch.lengths[i] = length;
@@ -189,9 +199,13 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
         if !apart.is_finite() {
             return f64::INFINITY;
         }
-        // a derivative that vanishes exactly says nothing for or against the length, and one that
-        // is about to vanish little
-        if size > 0.0 { apart / size.max(1e-2 * sizes[i]) } else { 1.0 }
+        if size == 0.0 {
+            return DISAGREEMENT; // a flat piece, unless a longer step resolves something
+        }
+        let terms = values.iter().map(|v| max_abs(v)).fold(0.0, f64::max);
+        let rounding = f64::EPSILON * terms / h;
+        // a derivative that is about to vanish says little for or against the length
+        apart.max(rounding) / size.max(1e-2 * sizes[i])
     }
 
     fn place(&self, u: &[f64], p: &[f64]) {

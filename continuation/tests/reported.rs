@@ -179,3 +179,109 @@ fn eigenvalues_at_a_branch_point_are_its_own() {
         assert!((point.eigenvalues[0].0 - point.p).abs() < 1e-9, "{point:?}");
     }
 }
+
+fn events(
+    n: usize,
+    start: f64,
+    steps: (Option<f64>, Option<f64>),
+    f: impl Fn(&[f64], &[f64], &mut [f64]),
+) -> Vec<(String, f64, Option<usize>, Option<usize>)> {
+    let problem = DenseProblem::from_residual(n, &["p"], f);
+    let settings = Settings {
+        target: Some(1.0),
+        max_step: steps.0,
+        first_step: steps.1,
+        ..Settings::default()
+    };
+    let branch = Tracer::new(&problem, "p", &vec![0.0; n], &[start], settings)
+        .unwrap()
+        .run(&mut |_| ControlFlow::Continue(()));
+    assert_eq!(branch.stopped.reason, StopReason::Target, "{:?}", branch.stopped);
+    let events = branch.events.iter();
+    events.map(|e| (e.kind.to_string(), e.p, e.unstable_before, e.unstable_after)).collect()
+}
+
+fn hopf(u: &[f64], p: f64, r: &mut [f64]) {
+    let square = u[0] * u[0] + u[1] * u[1];
+    r[0] = p * u[0] - u[1] - u[0] * square;
+    r[1] = u[0] + p * u[1] - u[1] * square;
+}
+
+#[test]
+fn step_that_ends_on_a_hopf_point_or_a_pitchfork() {
+    for step in [0.5, 0.25, 0.125, 0.0625, 0.01, 0.02, 0.05] {
+        let steps = (Some(step), Some(step));
+        let found = events(2, -1.0, steps, |u, p, r| hopf(u, p[0], r));
+        assert_eq!(found.len(), 1, "{step}: {found:?}");
+        assert_eq!((&found[0].0[..], found[0].2, found[0].3), ("hopf", Some(0), Some(2)));
+        assert!(found[0].1.abs() < 1e-12, "{step}: {found:?}");
+        let found = events(1, -1.0, steps, |u, p, r| r[0] = p[0] * u[0] - u[0].powi(3));
+        assert_eq!(found.len(), 1, "{step}: {found:?}");
+        assert_eq!((&found[0].0[..], found[0].2, found[0].3), ("branch-point", Some(0), Some(1)));
+    }
+}
+
+#[test]
+fn hopf_point_beside_a_branch_point_of_the_opposite_exchange() {
+    for gap in [0.1, 1e-2, 1e-3, 1e-5] {
+        for shift in [0.0, 0.123_456_7] {
+            let found = events(3, -1.0, (None, None), move |u, p, r| {
+                hopf(u, p[0] - shift, r);
+                r[2] = (gap + shift - p[0]) * u[2] - u[2].powi(3);
+            });
+            let kinds: Vec<&str> = found.iter().map(|e| &e.0[..]).collect();
+            assert_eq!(kinds, ["hopf", "branch-point"], "{gap} {shift}: {found:?}");
+            assert!((found[0].1 - shift).abs() < 1e-11, "{gap} {shift}: {found:?}");
+            assert!((found[1].1 - shift - gap).abs() < 1e-11, "{gap} {shift}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn derivatives_where_the_residual_is_flat() {
+    let flat = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0] - (p[0] / 1e-2).tanh());
+    let mut out = [1.0];
+    flat.parameter_derivative(&[-1.0], &[-1.0], continuation::ParamId(0), &mut out).unwrap();
+    assert_eq!(out[0], 0.0);
+    let kink = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0].max(0.0) - u[0]);
+    kink.parameter_derivative(&[0.0], &[-1.0], continuation::ParamId(0), &mut out).unwrap();
+    assert_eq!(out[0], 0.0);
+    // a value that is rounding says nothing of the length over which f varies
+    let smooth = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0] + u[0].exp());
+    let mut j = Dense::new(1);
+    smooth.jacobian(&[1e-17], &[-1.0], &mut j).unwrap();
+    assert!((j.get(0, 0) - 1.0).abs() < 1e-11, "{}", j.get(0, 0));
+}
+
+#[test]
+fn branches_that_cross_at_a_small_angle() {
+    for angle in [1e-1, 1e-2] {
+        let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| {
+            r[0] = (u[0] - p[0]) * (u[0] - (1.0 + angle) * p[0]);
+        });
+        let settings = Settings { target: Some(1.0), ..Settings::default() };
+        let branch = Tracer::new(&problem, "p", &[-1.0], &[-1.0], settings)
+            .unwrap()
+            .run(&mut |_| ControlFlow::Continue(()));
+        let end = branch.points.last().unwrap();
+        assert!((end.u[0] - 1.0).abs() < 1e-9, "{angle}: {:?} {:?}", end, branch.stopped);
+        assert_eq!(branch.events.len(), 1, "{angle}: {:?}", branch.events);
+        assert!(branch.events[0].p.abs() < 1e-7, "{angle}: {:?}", branch.events);
+    }
+}
+
+#[test]
+fn no_exchange_of_stability_to_first_order() {
+    let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| {
+        r[0] = p[0].powi(3) * u[0] - u[0].powi(3);
+    });
+    let settings = Settings { target: Some(1.0), ..Settings::default() };
+    let branch = Tracer::new(&problem, "p", &[0.0], &[-1.0], settings)
+        .unwrap()
+        .run(&mut |_| ControlFlow::Continue(()));
+    for event in &branch.events {
+        if let Some(crossing) = event.crossing() {
+            assert_ne!(crossing.shape, continuation::Shape::Pitchfork, "{crossing:?}");
+        }
+    }
+}

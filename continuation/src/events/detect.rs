@@ -234,6 +234,10 @@ impl Detector {
         final_say: bool,
     ) -> Result<(), Refusal> {
         let flip = a.orientation * b.orientation < 0;
+        if a.critical != b.critical && a.certified && b.certified {
+            // the special point at the start is not in the step; a step must not end on one
+            return if a.critical || final_say { Ok(()) } else { Err(Refusal::OnSpecialPoint) };
+        }
         let change = match (a.count, b.count) {
             (Some(before), Some(after)) => before.abs_diff(after),
             _ => usize::from(fold != flip),
@@ -243,13 +247,26 @@ impl Detector {
         if change > 0 && a.pairs != b.pairs && !final_say {
             return Err(Refusal::Stability);
         }
-        // a few eigenvalues found by iteration tell pairs that cross, no more
-        let hopf = change == 2 && !fold && !flip && crosses(a.pair, b.pair);
+        let certain = a.certified && b.certified;
+        let pairs = a.unstable_pairs.abs_diff(b.unstable_pairs);
+        let hopf = if certain && a.pairs == b.pairs {
+            // a pair that crosses beside a fold or a branch point, or beside another pair
+            let alone = pairs == 1 && change == 2 && !fold && !flip;
+            if pairs > 0 && !alone && !final_say {
+                return Err(Refusal::Stability);
+            }
+            pairs > 0
+        } else {
+            // a few eigenvalues found by iteration tell pairs that cross, no more
+            change == 2 && !fold && !flip && crosses(a.pair, b.pair)
+        };
         if hopf {
             self.found.push(Candidate::Hopf);
+        }
+        let change = change.saturating_sub(if hopf { 2 * pairs.max(1) } else { 0 });
+        if hopf && change == 0 && !flip {
             return Ok(());
         }
-        let certain = a.certified && b.certified;
         let kernel = match (flip, fold) {
             (true, true) if certain && change > 0 && !final_say => return Err(Refusal::Stability),
             (true, true) => 1,
@@ -262,7 +279,7 @@ impl Detector {
                 return Err(Refusal::Stability);
             }
             (false, false) if certain => change,
-            (false, false) if change == 2 && a.pairs == b.pairs => 2,
+            (false, false) if change == 2 && pairs == 0 => 2,
             _ => 0,
         };
         if kernel > 0 {

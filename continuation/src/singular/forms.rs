@@ -17,6 +17,9 @@ use crate::step::dot;
 
 /// A tangent whose parameter part, per natural amplitude and range, is below this is vertical.
 pub(super) const VERTICAL: f64 = 1e-5;
+/// A pitchfork that bends by more than this, in ranges of the parameter per natural amplitude, has no
+/// exchange of stability to first order.
+const STEEPEST: f64 = 1e6;
 /// A discriminant below this part of its terms: the branches touch, they do not cross.
 const TOUCHING: f64 = 1e-8;
 
@@ -76,7 +79,12 @@ pub(super) fn simple<P: Problem>(
             crossing.shape = Shape::Pitchfork;
             crossing.from_side = from_side;
             let (trunk, fork) = if from_side { (&leaving, &traced) } else { (&traced, &leaving) };
-            if let Some(bent) = pitchfork(probe, at, trunk, fork)? {
+            let bent = pitchfork(probe, at, trunk, fork)?;
+            let bent = bent.filter(|b| b.curvature.abs() < STEEPEST * range);
+            if bent.is_none() {
+                crossing.shape = Shape::Degenerate;
+            }
+            if let Some(bent) = bent {
                 let length = probe.length(fork);
                 crossing.curvature = bent.curvature / (length * length);
                 crossing.criticality = bent.criticality;

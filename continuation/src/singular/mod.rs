@@ -34,8 +34,8 @@ const MAX_GAP: f64 = 1e-6;
 const MAX_OFF: f64 = 0.1;
 /// Least cosine between the branch's expected direction and one of the tangents.
 const MIN_ALIGNMENT: f64 = 0.9;
-/// Where in the step Newton's method starts, in turn.
-const SEEDS: [f64; 3] = [0.5, 0.15, 0.85];
+/// Where in a step Newton's method starts, in turn, if nothing better is known.
+pub(crate) const SEEDS: [f64; 3] = [0.5, 0.15, 0.85];
 
 /// A branch point on the traced branch.
 #[derive(Debug, Clone)]
@@ -57,22 +57,27 @@ struct Segment<'s> {
     h: f64,
     /// Cosine between the tangents at both ends.
     bend: f64,
+    /// Whether the step cannot become shorter, so that small gaps cannot be followed.
+    final_say: bool,
 }
 
 /// Locates the branch point with a kernel of `k` dimensions between `a` and `b`, a scaled length
-/// `h` apart, or the `k` simple ones that lie there close together.
+/// `h` apart, or the `k` simple ones that lie there close together. Newton's method starts at the
+/// parts `seeds` of the step, in turn.
 pub(crate) fn locate_branch_points<P: Problem>(
     core: &mut Core<'_, P>,
     a: &State,
     b: &State,
     h: f64,
     k: usize,
+    seeds: &[f64],
+    final_say: bool,
 ) -> Result<Vec<Crossed>, Refusal> {
     let mut probe = core.probe();
-    let segment = Segment { a, b, h, bend: bend(core, a, b) };
+    let segment = Segment { a, b, h, bend: bend(core, a, b), final_say };
     let mut refusal = Refusal::Orientation;
     let mut found = None;
-    for seed in SEEDS {
+    for &seed in seeds {
         let mut x = a.clone();
         interpolate(a, b, h, segment.bend, seed * h, &mut x);
         let z = Extended { u: x.u.clone(), p: x.p };
@@ -110,7 +115,7 @@ fn attempt<P: Problem>(
     k: usize,
     x: &mut State,
 ) -> Result<Crossed, Failure> {
-    let Segment { a, b, h, bend } = segment;
+    let Segment { a, b, h, bend, final_say } = segment;
     let along = |probe: &mut Probe<'_, P>, z: &Extended| {
         let mut d = z.clone();
         d.add(-1.0, &Extended { u: a.u.clone(), p: a.p });
@@ -119,7 +124,10 @@ fn attempt<P: Problem>(
     let seed = along(probe, z).clamp(0.0, h);
     let tangent = tangent_at(probe, a, b, h, bend, seed);
     let mut found = kernel::find(probe, z, &tangent, k)?;
-    if found.gap > MAX_GAP {
+    // a residual no larger than that of a converged state says nothing of a gap
+    let noise = 8.0 * (a.u.len() as f64).sqrt() * core.residual(a).map_err(Failure::Evaluation)?;
+    let gap = if found.unfolding > noise { found.gap } else { 0.0 };
+    if gap > MAX_GAP || (gap > 0.0 && !final_say) {
         return Err(Failure::NoConvergence);
     }
     // on this branch, within this step
@@ -172,9 +180,6 @@ fn attempt<P: Problem>(
         }
     }
     core.place(x, &found.z, &analysed.traced).map_err(Failure::Evaluation)?;
-    // a residual no larger than that of a converged state says nothing of a gap
-    let noise = 8.0 * (a.u.len() as f64).sqrt() * core.residual(a).map_err(Failure::Evaluation)?;
-    let gap = if found.unfolding > noise { found.gap } else { 0.0 };
     x.certified = a.certified && b.certified;
     let error = found.correction.max(gap).max(f64::EPSILON);
     Ok(Crossed { at, error, crossing: analysed.crossing, state: x.clone() })

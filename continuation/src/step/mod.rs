@@ -46,6 +46,9 @@ pub enum Refusal {
     /// The orientation of the branch changed: a branch point, a jump or a reversal.
     #[error("the orientation of the branch changes within the step")]
     Orientation,
+    /// The step ends on a special point, where the sides of it cannot be told apart.
+    #[error("the step ends on a special point")]
+    OnSpecialPoint,
     /// The step away from a branch point fell back onto the branch that led to it.
     #[error("the step falls back onto the branch that led to the branch point")]
     OldBranch,

@@ -17,6 +17,8 @@ pub(crate) struct StabilityCount<P: Problem> {
     /// Number of eigenvalues that are reported at every point.
     wanted: usize,
     solver: ModeSolver<P>,
+    /// Number of unstable ones among the latest few eigenvalues.
+    last: usize,
 }
 
 impl<P: Problem> StabilityCount<P> {
@@ -26,6 +28,7 @@ impl<P: Problem> StabilityCount<P> {
             multipliers: problem.multipliers(),
             wanted,
             solver: ModeSolver::new(problem, wanted),
+            last: 0,
         }
     }
 
@@ -56,6 +59,7 @@ impl<P: Problem> StabilityCount<P> {
     ) {
         (x.unstable, x.count, x.certified) = (None, None, false);
         (x.pair, x.frequency, x.pairs) = (f64::NAN, f64::NAN, 0);
+        (x.unstable_pairs, x.critical) = (0, false);
         x.eigenvalues.clear();
         if let Some(curve) = problem.special_points() {
             p[which.0] = x.p;
@@ -78,8 +82,11 @@ impl<P: Problem> StabilityCount<P> {
             let reported = self.solver.weighted(problem, jacobian).unwrap_or(spectrum);
             self.solver.pick(reported, &mut x.eigenvalues);
         } else if self.sense != Stability::None {
-            let few = self.solver.few(problem, jacobian, FEW.max(self.wanted));
+            // more than twice as many as were unstable last, so that the unstable ones are among them
+            let count = FEW.max(self.wanted).max(2 * self.last + FEW / 2);
+            let few = self.solver.few(problem, jacobian, count);
             self.read(&few, energy, x);
+            self.last = x.count.unwrap_or(0);
             self.solver.pick(few, &mut x.eigenvalues);
         }
         if self.sense != Stability::None {
@@ -94,11 +101,13 @@ impl<P: Problem> StabilityCount<P> {
         let zero = 4.0 * spectrum.len() as f64 * f64::EPSILON * largest;
         let sign = if energy { -1.0 } else { 1.0 };
         x.count = Some(spectrum.iter().filter(|(re, _)| sign * re > zero).count());
+        x.critical = spectrum.iter().any(|(re, _)| re.abs() <= zero);
         if energy {
             return;
         }
         let pairs = spectrum.iter().filter(|(_, im)| *im > 0.0);
         x.pairs = pairs.clone().count();
+        x.unstable_pairs = pairs.clone().filter(|(re, _)| *re > zero).count();
         let nearest = pairs.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
         if let Some((re, im)) = nearest {
             (x.pair, x.frequency) = (*re, *im);

@@ -30,6 +30,11 @@ pub(crate) struct State {
     pub(crate) pair: f64,
     /// Its imaginary part.
     pub(crate) frequency: f64,
+    /// Number of unstable complex pairs, where the spectrum is known.
+    pub(crate) unstable_pairs: usize,
+    /// Whether an eigenvalue lies on the border of stability to rounding: the state is a special
+    /// point itself.
+    pub(crate) critical: bool,
     /// Number of complex pairs, where the spectrum is known.
     pub(crate) pairs: usize,
     /// Observables.
@@ -55,6 +60,8 @@ impl State {
             pair: f64::NAN,
             frequency: f64::NAN,
             pairs: 0,
+            unstable_pairs: 0,
+            critical: false,
             values: vec![0.0; observables],
             slopes: vec![0.0; observables],
         }
@@ -78,6 +85,8 @@ impl State {
         self.pair = other.pair;
         self.frequency = other.frequency;
         self.pairs = other.pairs;
+        self.unstable_pairs = other.unstable_pairs;
+        self.critical = other.critical;
     }
 
     /// Multiplies the tangent, and all that is measured along it.

@@ -296,6 +296,8 @@ impl<'a, P: Problem> Tracer<'a, P> {
                     }
                     h *= match refusal {
                         Refusal::Evaluation(_) => 0.4,
+                        // not a part of the step that comes back to the same point
+                        Refusal::OnSpecialPoint => 0.618,
                         _ => 0.5,
                     };
                     if h < shortest && self.leap(&refusal) {

@@ -4,7 +4,7 @@ use super::Tracer;
 use crate::branch::{Detail, Event, EventKind, StopReason};
 use crate::events::{Candidate, Located, Role, locate};
 use crate::problem::Problem;
-use crate::singular::{fold_form, locate_branch_points, locate_hopf};
+use crate::singular::{Crossed, SEEDS, fold_form, locate_branch_points, locate_hopf};
 use crate::step::{Refusal, State};
 
 /// Part of the step to which a Hopf point is bracketed before Newton's method takes over.
@@ -72,21 +72,17 @@ impl<P: Problem> Tracer<'_, P> {
     ) -> Result<(), Refusal> {
         let Self { core, current: a, trial: b, work, settings, .. } = self;
         let candidate = Candidate::BranchPoint { kernel };
-        match locate_branch_points(core, a, b, h, kernel) {
-            Ok(found) => {
-                for one in found {
-                    let kernel = one.crossing.multiplicity;
-                    located.push(Special {
-                        candidate: Candidate::BranchPoint { kernel },
-                        place: Located { at: one.at, error: one.error },
-                        detail: Detail::Crossing(one.crossing),
-                        state: one.state,
-                    });
-                }
-            }
+        let special = |one: Crossed| Special {
+            candidate: Candidate::BranchPoint { kernel: one.crossing.multiplicity },
+            place: Located { at: one.at, error: one.error },
+            detail: Detail::Crossing(one.crossing),
+            state: one.state,
+        };
+        match locate_branch_points(core, a, b, h, kernel, &SEEDS, final_say) {
+            Ok(found) => located.extend(found.into_iter().map(special)),
+            Err(refusal) if !final_say => return Err(refusal),
             // a count that is not certain may have changed without a reason
             Err(_) if kernel > 1 && !(a.certified && b.certified) => {}
-            Err(refusal) if !final_say => return Err(refusal),
             // steps cannot become shorter: as near as bisection comes
             Err(_) => {
                 let tolerance = settings.event_tolerance;
@@ -97,6 +93,11 @@ impl<P: Problem> Tracer<'_, P> {
                         Located { at: h, error: h }
                     }
                 };
+                let seeds = [place.at / h];
+                if let Ok(found) = locate_branch_points(core, a, b, h, kernel, &seeds, true) {
+                    located.extend(found.into_iter().map(special));
+                    return Ok(());
+                }
                 let state = work.clone();
                 located.push(Special { candidate, place, detail: Detail::None, state });
             }
