@@ -33,4 +33,4 @@ pub use newton::{NewtonError, NewtonReport, NewtonSettings, newton};
 pub use problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints, Stability};
 pub use settings::{Settings, SettingsError};
 pub use step::Refusal;
-pub use tracer::{Progress, TraceError, Tracer};
+pub use tracer::{Progress, TraceError, Tracer, both_ways};

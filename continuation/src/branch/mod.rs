@@ -103,7 +103,7 @@ pub struct Statistics {
 pub struct Branch {
     /// Name of the continued parameter.
     pub parameter: String,
-    /// Values of all parameters at the start (the continued one varies).
+    /// Values of all parameters where the trace was started (the continued one varies).
     pub parameters: Vec<f64>,
     /// Names of the observables.
     pub observables: Vec<String>,
@@ -113,11 +113,21 @@ pub struct Branch {
     pub events: Vec<Event>,
     /// Why the branch ended.
     pub stopped: Stop,
+    /// Why it ends at its first point, where that is an end and not a start
+    /// ([`crate::both_ways`]).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub began: Option<Stop>,
     /// What it cost.
     pub statistics: Statistics,
 }
 
 impl Branch {
+    /// Whether the branch was traced as far as it was asked to be, at both ends if it has two.
+    pub fn is_complete(&self) -> bool {
+        let ends = self.began.iter().chain([&self.stopped]);
+        ends.into_iter().all(|stop| stop.reason.is_complete())
+    }
+
     /// The special points of one kind, in order along the branch.
     pub fn events_of<'b>(&'b self, kind: &EventKind) -> impl Iterator<Item = &'b Event> + use<'b> {
         let kind = kind.clone();

@@ -1,11 +1,11 @@
 //! A curve of special points, traced both ways and ordered from end to end.
 
 use super::underlying::CurveError;
-use crate::branch::{Branch, Stop, StopReason};
+use crate::branch::{Branch, Stop};
 use crate::events::Watch;
 use crate::problem::Problem;
 use crate::settings::Settings;
-use crate::tracer::{Progress, Tracer};
+use crate::tracer::{Progress, both_ways};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -40,51 +40,8 @@ pub(super) fn trace<P: Problem>(
     watches: &[Watch],
     observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<Curve, CurveError> {
-    let mut run = |increasing, offset: Option<&Branch>| -> Result<Branch, CurveError> {
-        let settings = Settings { increasing: Some(increasing), ..settings.clone() };
-        let tracer = Tracer::new(problem, second, u, p, settings)?.watching(watches)?;
-        let (points, events) = offset.map_or((0, 0), |b| (b.points.len(), b.events.len()));
-        Ok(tracer.run(&mut |at| {
-            let (points, events) = (at.points + points, at.events + events);
-            observer(&Progress { points, events, ..*at })
-        }))
-    };
-    let forward = run(true, None)?;
-    if matches!(forward.stopped.reason, StopReason::ClosedLoop | StopReason::Interrupted) {
-        let first_end = forward.stopped.clone();
-        return Ok(Curve { branch: forward, first_end });
-    }
-    let backward = run(false, Some(&forward))?;
-    Ok(join(backward, forward))
-}
-
-/// One curve of two that begin at the same point: the first one reversed, then the second.
-fn join(mut back: Branch, mut ahead: Branch) -> Curve {
-    let (points, events) = (back.points.len(), back.events.len());
-    let length = back.points.last().map_or(0.0, |point| point.s);
-    back.points.reverse();
-    for point in &mut back.points {
-        point.s = length - point.s;
-        point.dp_ds = -point.dp_ds;
-        point.event = point.event.map(|event| events - 1 - event);
-    }
-    back.events.reverse();
-    for event in &mut back.events {
-        event.point = points - 1 - event.point;
-        std::mem::swap(&mut event.unstable_before, &mut event.unstable_after);
-    }
-    for mut point in ahead.points.drain(..).skip(1) {
-        point.s += length;
-        point.event = point.event.map(|event| events + event);
-        back.points.push(point);
-    }
-    for mut event in ahead.events.drain(..) {
-        event.point += points - 1;
-        back.events.push(event);
-    }
-    back.statistics.newton_iterations += ahead.statistics.newton_iterations;
-    back.statistics.accepted += ahead.statistics.accepted;
-    back.statistics.rejected += ahead.statistics.rejected;
-    let first_end = std::mem::replace(&mut back.stopped, ahead.stopped);
-    Curve { branch: back, first_end }
+    let settings = Settings { increasing: Some(true), ..settings.clone() };
+    let branch = both_ways(problem, second, u, p, settings, watches, observer)?;
+    let first_end = branch.began.clone().unwrap_or_else(|| branch.stopped.clone());
+    Ok(Curve { branch, first_end })
 }

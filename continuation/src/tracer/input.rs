@@ -85,6 +85,11 @@ pub(super) fn range(settings: &Settings, start: f64, parameter: &Parameter) -> f
     }
 }
 
+/// Whether the parameter increases at first.
+pub(super) fn increases(settings: &Settings, start: f64) -> bool {
+    settings.increasing.unwrap_or_else(|| settings.target.is_none_or(|target| target > start))
+}
+
 /// Checks a vector's length and that it is finite.
 pub(super) fn check(what: &'static str, values: &[f64], expected: usize) -> Result<(), TraceError> {
     if values.len() != expected {

@@ -15,11 +15,13 @@
 //! # Ok::<(), continuation::TraceError>(())
 //! ```
 
+mod both_ways;
 mod closure;
 mod input;
 mod special;
 mod switching;
 
+pub use both_ways::both_ways;
 pub use input::{Progress, TraceError};
 
 use crate::branch::{Branch, Event, Point, Statistics, Stop, StopReason};
@@ -28,7 +30,7 @@ use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem};
 use crate::settings::{Settings, SettingsError};
 use crate::step::{Constraint, Core, Precision, Refusal, State, StepSize, Weights, judge};
-use input::{check, range, unknown_observable};
+use input::{check, increases, range, unknown_observable};
 use special::Special;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -44,6 +46,8 @@ pub struct Tracer<'a, P: Problem> {
     detector: Detector,
     size: StepSize,
     start: State,
+    // where the other half of the branch ended for want of points, if this is a second half
+    finish: Option<State>,
     start_p: Vec<f64>,
     previous: State,
     // scaled length of the last step; 0 when `previous` says nothing about the curvature
@@ -116,9 +120,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             let value = if start.p < lo { lo } else { hi };
             return Err(SettingsError { key: "domain", value, allowed }.into());
         }
-        let increasing = settings
-            .increasing
-            .unwrap_or_else(|| settings.target.is_none_or(|target| target > start.p));
+        let increasing = increases(&settings, start.p);
         let unit = Weights { unknowns: 1.0, parameter: 1.0 };
         let mut core = Core::new(problem, ParamId(which), p, unit, &settings);
         core.statistics.newton_iterations += report.iterations;
@@ -151,6 +153,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             settings,
             detector,
             size,
+            finish: None,
             start_p: p.to_vec(),
             previous: start.clone(),
             previous_h: 0.0,
@@ -217,6 +220,12 @@ impl<'a, P: Problem> Tracer<'a, P> {
     /// Traces to the end and collects the branch. The observer is called after every point and may
     /// stop the trace; nothing computed is lost, so that points of the last step may still follow.
     pub fn run(mut self, observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Branch {
+        let points = self.exhaust(observer);
+        self.into_branch(points)
+    }
+
+    /// All points to the end.
+    fn exhaust(&mut self, observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Vec<Point> {
         let mut points = Vec::new();
         let mut interrupted = false;
         while let Some(point) = self.next() {
@@ -235,6 +244,10 @@ impl<'a, P: Problem> Tracer<'a, P> {
                 }
             }
         }
+        points
+    }
+
+    fn into_branch(self, points: Vec<Point>) -> Branch {
         let problem = self.core.problem;
         let stopped =
             self.stop.unwrap_or(Stop { reason: StopReason::Interrupted, detail: String::new() });
@@ -245,6 +258,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             points,
             events: self.events,
             stopped,
+            began: None,
             statistics: self.core.statistics,
         }
     }
@@ -355,7 +369,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         detector.detect(current, trial, h, core.weights.parameter, final_say)?;
         let s_trial = self.s + self.metric_distance();
         // before the location, whose result is left in the same work space
-        let returned = self.passes_start(h);
+        let returned = self.closes(h);
         let special = self.locate_all(h, final_say)?;
         self.accept(h, &special, s_trial, returned)?;
         let length = self.current.length;
