@@ -285,3 +285,41 @@ fn no_exchange_of_stability_to_first_order() {
         }
     }
 }
+
+#[test]
+fn starts_at_or_beside_a_fold() {
+    // p = u² + u³/2: a fold at 0, another one at u = -4/3
+    let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| {
+        r[0] = p[0] - u[0] * u[0] - 0.5 * u[0].powi(3);
+    });
+    for u in [0.0, 1e-12, 1e-9, 1e-7, -1e-7, 1e-6, 1e-4, -1e-4, 1e-2, 0.1] {
+        let p = u * u + 0.5 * f64::powi(u, 3);
+        for increasing in [true, false] {
+            let domain = Some((-1.0, 1.0));
+            let settings = Settings { domain, increasing: Some(increasing), ..Settings::default() };
+            let branch = Tracer::new(&problem, "p", &[u], &[p], settings)
+                .unwrap_or_else(|e| panic!("{u} {increasing}: {e}"))
+                .run(&mut |_| ControlFlow::Continue(()));
+            assert_eq!(branch.stopped.reason, StopReason::Domain, "{u}: {:?}", branch.stopped);
+            let folds: Vec<f64> =
+                branch.events_of(&EventKind::Fold).map(|e| branch.points[e.point].u[0]).collect();
+            let mut known = vec![0.0, -4.0 / 3.0];
+            // to the right of both: only the way to the left meets them
+            let left = branch.points.last().unwrap().u[0] < u;
+            if !left {
+                known.retain(|fold| *fold > u);
+            } else {
+                known.retain(|fold| *fold < u);
+            }
+            // a fold that is the start itself, to the accuracy to which it can be solved there
+            if u.abs() < 1e-6 && folds.len() != known.len() {
+                known.retain(|fold| *fold != 0.0);
+            }
+            assert_eq!(folds.len(), known.len(), "{u} {increasing}: {folds:?} {known:?}");
+            for (fold, known) in folds.iter().zip(&known) {
+                assert!((fold - known).abs() < 1e-8, "{u} {increasing}: {folds:?}");
+            }
+            assert!(branch.points.len() < 120, "{u}: {}", branch.points.len());
+        }
+    }
+}

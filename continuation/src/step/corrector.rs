@@ -11,7 +11,7 @@ use crate::branch::Statistics;
 use crate::linalg::{Bordered, BorderedFacts, Matrix, max_abs};
 use crate::problem::{EvalError, ParamId, Problem, check_finite};
 use crate::settings::Settings;
-use crate::singular::{Extended, Probe};
+use crate::singular::{Extended, Probe, arbitrary};
 
 /// The scalar equation that closes the system.
 #[derive(Clone, Copy)]
@@ -44,6 +44,8 @@ pub(crate) struct Corrected {
 
 /// A residual below this part of its terms is rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// A tangent along which the residual changes by this many times what the parameter changes is steep.
+const STEEP: f64 = 1e2;
 
 /// The problem, its matrices and all work space of the tracer.
 pub(crate) struct Core<'a, P: Problem> {
@@ -294,23 +296,36 @@ impl<'a, P: Problem> Core<'a, P> {
         &mut self,
         x: &mut State,
         increasing: bool,
+        range: f64,
         weigh: impl FnOnce(f64, f64) -> Weights,
     ) -> Result<(), Refusal> {
         self.assemble(&x.u, x.p).map_err(Refusal::Evaluation)?;
         let sign = if increasing { 1.0 } else { -1.0 };
         // any border that is not orthogonal to the tangent serves: the parameter first, and
-        // where the start is a fold, the direction that this solve returns
-        let mut rhs = [1.0];
-        self.bordered.row_mut(0).fill(0.0);
-        self.bordered.set_corner(0, 0, 1.0);
-        self.bordered.factor(&mut self.jacobian);
-        x.tu.fill(0.0);
-        self.bordered.solve(&mut self.jacobian, &mut x.tu, &mut rhs);
-        x.tp = rhs[0];
+        // where the start is a fold, the direction that this solve returns, or no particular one
+        for corner in [1.0, 0.0] {
+            let mut rhs = [1.0];
+            for (i, c) in self.bordered.row_mut(0).iter_mut().enumerate() {
+                *c = if corner == 0.0 { arbitrary(1, i) } else { 0.0 };
+            }
+            self.bordered.set_corner(0, 0, corner);
+            self.bordered.factor(&mut self.jacobian);
+            x.tu.fill(0.0);
+            self.bordered.solve(&mut self.jacobian, &mut x.tu, &mut rhs);
+            x.tp = rhs[0];
+            let size = max_abs(&x.tu).max(x.tp.abs());
+            if size.is_finite() && size > 0.0 {
+                x.tu.iter_mut().for_each(|t| *t /= size);
+                x.tp /= size;
+                break;
+            }
+        }
         self.problem.metric(&x.tu, &mut x.mtu);
         let du_dp = super::dot(&x.mtu, &x.tu).max(0.0).sqrt() / x.tp.abs();
         self.problem.metric(&x.u, &mut self.mdu);
-        self.weights = weigh(du_dp, super::dot(&self.mdu, &x.u).max(0.0).sqrt());
+        let size = super::dot(&self.mdu, &x.u).max(0.0).sqrt();
+        let along = self.bounded(x, du_dp * range, range);
+        self.weights = weigh(along, size);
         self.normalise(x)?;
         x.scale_tangent(sign);
         let base = x.clone();
@@ -321,6 +336,33 @@ impl<'a, P: Problem> Core<'a, P> {
         self.bordered.solve(&mut self.jacobian, &mut x.tu, &mut g);
         x.tp = g[0];
         self.complete(x)
+    }
+
+    /// How far the unknowns move along the tangent while the parameter passes its range: `along`,
+    /// unless the residual changes much more on that way than the parameter changes it. Beside a
+    /// fold, where the tangent is steep, the branch bends long before.
+    fn bounded(&mut self, x: &State, along: f64, range: f64) -> f64 {
+        let norm = super::dot(&x.mtu, &x.tu).max(0.0).sqrt();
+        let mut reach = if along.is_finite() { along } else { f64::MAX.sqrt() };
+        let by_parameter = max_abs(self.bordered.column(0)) * range;
+        if !(norm > 0.0 && by_parameter > 0.0) {
+            return along;
+        }
+        self.p[self.which.0] = x.p;
+        for k in 0..2000 {
+            let place = &mut self.shifted[0];
+            for ((place, u), t) in place.iter_mut().zip(&x.u).zip(&x.tu) {
+                *place = u + reach / norm * t;
+            }
+            let value = self.problem.residual(place, &self.p, &mut self.du);
+            let change = value.map_or(f64::INFINITY, |()| max_abs(&self.du));
+            let most = if k == 0 { STEEP } else { 2.0 };
+            if change <= most * by_parameter || reach <= f64::MIN_POSITIVE {
+                return reach;
+            }
+            reach *= 0.5;
+        }
+        along
     }
 
     /// Asks for the slopes of these observables from now on, and at `x` at once.

@@ -125,10 +125,9 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let mut core = Core::new(problem, ParamId(which), p, unit, &settings);
         core.statistics.newton_iterations += report.iterations;
         let natural = problem.unknown_scale(ParamId(which));
-        core.start(&mut start, increasing, |du_dp, size| match natural {
+        core.start(&mut start, increasing, range, |along, size| match natural {
             Some(scale) => Weights { unknowns: scale, parameter: scale },
             None => {
-                let along = du_dp * range;
                 let unknowns = [along, size, 1.0].into_iter().find(|x| x.is_finite() && *x > 0.0);
                 Weights { unknowns: unknowns.unwrap_or(1.0), parameter: range }
             }
