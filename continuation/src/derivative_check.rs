@@ -30,8 +30,8 @@ impl DerivativeCheck {
 
 /// Compares Jacobian and parameter derivatives with four-point differences of the residual at a
 /// state; `scale` is a typical magnitude of the unknowns, in their unit: differences reach over
-/// 2e-3 of it, or of the unknown if that is larger. Costs `4 n` residuals: for tests. Not seen: entries
-/// left from an earlier assembly, as every Jacobian here is assembled into a fresh matrix.
+/// 2e-3 of it, or of the unknown if that is larger. Every matrix is assembled twice, so that entries
+/// left from an earlier assembly are seen. Costs `4 n` residuals: for tests.
 ///
 /// ```
 /// use continuation::{check_derivatives, samples::Bratu};
@@ -50,6 +50,7 @@ pub fn check_derivatives<P: Problem>(
 ) -> Result<DerivativeCheck, EvalError> {
     let n = problem.dim();
     let mut jacobian = problem.new_jacobian();
+    problem.jacobian(u, p, &mut jacobian)?;
     problem.jacobian(u, p, &mut jacobian)?;
     let (mut unit, mut column) = (vec![0.0; n], vec![0.0; n]);
     let (mut place, mut values) = (u.to_vec(), p.to_vec());
@@ -90,6 +91,7 @@ pub fn check_derivatives<P: Problem>(
     let (mut r, mut together) = (vec![0.0; n], vec![0.0; n]);
     problem.residual(u, p, &mut r)?;
     let mut second = problem.new_jacobian();
+    problem.linearise(u, p, &mut together, &mut second)?;
     problem.linearise(u, p, &mut together, &mut second)?;
     let residuals = relative(deviation(&r, &together), max_abs(&r));
     second.axpy(-1.0, &jacobian);

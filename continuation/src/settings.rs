@@ -31,7 +31,7 @@ pub struct Settings {
     /// The trace ends the first time the parameter takes this value after leaving its start; met
     /// exactly, as the last point, which is no event.
     pub target: Option<f64>,
-    /// The trace ends where the parameter meets a bound of this interval, both of them finite, with
+    /// The trace ends where the parameter meets a bound of this interval, of which one may be infinite, with
     /// the start inside; met exactly, as the last point.
     pub domain: Option<(f64, f64)>,
     /// Whether the parameter increases at first; `None`: towards the target, else upwards. Without

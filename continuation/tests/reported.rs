@@ -5,7 +5,8 @@
 use continuation::linalg::Dense;
 use continuation::samples::{Bratu, Cusp};
 use continuation::{
-    Branch, DenseProblem, EventKind, Matrix, Problem, Settings, StopReason, Tracer, Watch, modes,
+    Branch, DenseProblem, EvalError, EventKind, Matrix, ParamId, Parameter, Problem, Settings,
+    StopReason, Tracer, Watch, check_derivatives, modes,
 };
 use std::ops::ControlFlow;
 
@@ -241,10 +242,10 @@ fn hopf_point_beside_a_branch_point_of_the_opposite_exchange() {
 fn derivatives_where_the_residual_is_flat() {
     let flat = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0] - (p[0] / 1e-2).tanh());
     let mut out = [1.0];
-    flat.parameter_derivative(&[-1.0], &[-1.0], continuation::ParamId(0), &mut out).unwrap();
+    flat.parameter_derivative(&[-1.0], &[-1.0], ParamId(0), &mut out).unwrap();
     assert_eq!(out[0], 0.0);
     let kink = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0].max(0.0) - u[0]);
-    kink.parameter_derivative(&[0.0], &[-1.0], continuation::ParamId(0), &mut out).unwrap();
+    kink.parameter_derivative(&[0.0], &[-1.0], ParamId(0), &mut out).unwrap();
     assert_eq!(out[0], 0.0);
     // a value that is rounding says nothing of the length over which f varies
     let smooth = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0] + u[0].exp());
@@ -321,5 +322,58 @@ fn starts_at_or_beside_a_fold() {
             }
             assert!(branch.points.len() < 120, "{u}: {}", branch.points.len());
         }
+    }
+}
+
+#[test]
+fn assembly_that_forgets_what_was_there() {
+    struct Adds;
+    impl Problem for Adds {
+        type Jacobian = Dense;
+        fn dim(&self) -> usize {
+            1
+        }
+        fn parameters(&self) -> &[Parameter] {
+            &[Parameter { name: "p", unit: "", scale: 1.0 }]
+        }
+        fn new_jacobian(&self) -> Dense {
+            Dense::new(1)
+        }
+        fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
+            r[0] = 3.0 * u[0] - p[0];
+            Ok(())
+        }
+        fn jacobian(&self, _: &[f64], _: &[f64], j: &mut Dense) -> Result<(), EvalError> {
+            j.add(0, 0, 3.0);
+            Ok(())
+        }
+        fn parameter_derivative(
+            &self,
+            _: &[f64],
+            _: &[f64],
+            _: ParamId,
+            out: &mut [f64],
+        ) -> Result<(), EvalError> {
+            out[0] = -1.0;
+            Ok(())
+        }
+    }
+    let check = check_derivatives(&Adds, &[0.3], &[0.5], 1.0).unwrap();
+    assert!(check.jacobian > 0.4, "{check:?}");
+}
+
+#[test]
+fn every_direction_a_branch() {
+    for n in [2, 3] {
+        let problem = DenseProblem::from_residual(n, &["p"], |u, p, r| {
+            let square: f64 = u.iter().map(|x| x * x).sum();
+            r.iter_mut().zip(u).for_each(|(r, u)| *r = (p[0] - square) * u);
+        });
+        let settings = Settings { target: Some(1.0), ..Settings::default() };
+        let branch = Tracer::new(&problem, "p", &vec![0.0; n], &[-1.0], settings)
+            .unwrap()
+            .run(&mut |_| ControlFlow::Continue(()));
+        let crossing = branch.events[0].crossing().unwrap();
+        assert_eq!((crossing.multiplicity, crossing.leaving.len()), (n, 1));
     }
 }

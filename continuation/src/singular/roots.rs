@@ -42,6 +42,8 @@ impl Forms {
 
 /// Two directions this near to each other are one.
 const SAME: f64 = 1e-6;
+/// Residual, relative to the forms, below which a direction is one of a continuous family.
+const FLAT: f64 = 1e-6;
 
 /// All `(ξ, λ)`, one of each pair `±ξ`. `None` where every direction solves the equations.
 pub(super) fn solutions(d: &Forms, a: &Forms) -> Option<Vec<(Vec<f64>, f64)>> {
@@ -54,7 +56,23 @@ pub(super) fn solutions(d: &Forms, a: &Forms) -> Option<Vec<(Vec<f64>, f64)>> {
             found.push((x, lambda));
         }
     }
-    Some(found)
+    let mut first = vec![0.0; d.k];
+    first[0] = 1.0;
+    (!found.is_empty() || residual(d, a, &first, multiplier(d, a, &first)) > FLAT * d.size())
+        .then_some(found)
+}
+
+/// The `λ` for which `d(x) + λ a(x)` is least.
+fn multiplier(d: &Forms, a: &Forms, x: &[f64]) -> f64 {
+    let ((d, _), (a, _)) = (d.at(x), a.at(x));
+    let aa = crate::step::dot(&a, &a);
+    if aa > 0.0 { -crate::step::dot(&a, &d) / aa } else { 0.0 }
+}
+
+/// Largest component of `d(x) + λ a(x)`.
+fn residual(d: &Forms, a: &Forms, x: &[f64], lambda: f64) -> f64 {
+    let ((d, _), (a, _)) = (d.at(x), a.at(x));
+    d.iter().zip(&a).map(|(d, a)| (d + lambda * a).abs()).fold(0.0, f64::max)
 }
 
 /// Zeros of `a₁ d₂ − a₂ d₁` as directions in the plane.
@@ -128,12 +146,7 @@ fn polish(d: &Forms, a: &Forms, mut x: Vec<f64>) -> Option<(Vec<f64>, f64)> {
     let k = d.k;
     let size = d.size().max(f64::MIN_POSITIVE);
     let scale = size / a.size();
-    let initial = {
-        let ((d, _), (a, _)) = (d.at(&x), a.at(&x));
-        let aa = crate::step::dot(&a, &a);
-        if aa > 0.0 { -crate::step::dot(&a, &d) / aa } else { 0.0 }
-    };
-    let mut lambda = initial;
+    let mut lambda = multiplier(d, a, &x);
     for iteration in 0..50 {
         let ((dv, dd), (av, da)) = (d.at(&x), a.at(&x));
         let residual: Vec<f64> = dv.iter().zip(&av).map(|(d, a)| d + lambda * a).collect();
@@ -211,7 +224,8 @@ mod tests {
     }
 
     #[test]
-    fn a_circle_of_solutions_is_said_so() {
+    fn a_continuous_family_of_solutions_is_said_so() {
         assert!(solutions(&symmetric(2, 1.0), &linear(2)).is_none());
+        assert!(solutions(&symmetric(3, 1.0), &linear(3)).is_none());
     }
 }

@@ -154,6 +154,7 @@ impl<P: Problem> Tracer<'_, P> {
             Candidate::BranchPoint { kernel } if !last => {
                 between(before, self.trial.unstable, *kernel)
             }
+            Candidate::Hopf if !last => between(before, self.trial.unstable, 2),
             Candidate::Fold | Candidate::BranchPoint { .. } | Candidate::Hopf => {
                 self.trial.unstable
             }

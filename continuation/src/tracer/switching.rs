@@ -25,8 +25,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
     /// Prepares a trace of a branch that leaves `branch` at one of its branch points, along
     /// `direction`, one of [`crate::Crossing::leaving`], or against it. The first point is the
     /// branch point itself. The parameters other than the continued one have their values of
-    /// `branch`; `settings` are those of the new trace. The first step is not searched for special
-    /// points.
+    /// `branch`; `settings` are those of the new trace.
     ///
     /// ```
     /// use continuation::{DenseProblem, Settings, Tracer};
@@ -105,6 +104,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         core.place(&mut start, &Extended { u: at.u.clone(), p: at.p }, &tangent)
             .map_err(|error| TraceError::Tangent(Refusal::Evaluation(error)))?;
         (start.unstable, start.certified) = (at.unstable, at.certified);
+        start.eigenvalues.clone_from(&at.eigenvalues);
         let mut probe = core.probe();
         let mut old = Extended { u: crossing.traced.du.clone(), p: crossing.traced.dp };
         let norm = probe.norm(&old);
