@@ -4,6 +4,7 @@ pub mod branch;
 pub mod codim2;
 mod dense_problem;
 mod derivative_check;
+pub mod diagram;
 #[cfg(feature = "dual")]
 mod dual_problem;
 mod events;

@@ -53,6 +53,8 @@ pub enum StopReason {
     StepTooSmall,
     /// The branch came back over its start, against its direction.
     ReturnedToStart,
+    /// The branch goes on as one that is known already ([`crate::diagram`]).
+    Retraced,
     /// The observer asked to stop.
     Interrupted,
 }
@@ -60,7 +62,8 @@ pub enum StopReason {
 impl StopReason {
     /// Whether the branch was traced as far as it was asked to be.
     pub fn is_complete(self) -> bool {
-        matches!(self, StopReason::Target | StopReason::ClosedLoop | StopReason::Domain)
+        use StopReason::{ClosedLoop, Domain, Retraced, Target};
+        matches!(self, Target | ClosedLoop | Domain | Retraced)
     }
 }
 
@@ -73,6 +76,7 @@ impl fmt::Display for StopReason {
             StopReason::MaxPoints => "max-points",
             StopReason::StepTooSmall => "step-too-small",
             StopReason::ReturnedToStart => "returned-to-start",
+            StopReason::Retraced => "retraced",
             StopReason::Interrupted => "interrupted",
         })
     }

@@ -238,15 +238,27 @@ impl<'a, P: Problem> Tracer<'a, P> {
             if !interrupted && observer(&progress).is_break() {
                 // what is computed already is still handed out
                 interrupted = true;
-                if self.stop.is_none() {
-                    self.end(StopReason::Interrupted, "interrupted".to_owned());
-                }
+                self.interrupt();
             }
         }
         points
     }
 
-    fn into_branch(self, points: Vec<Point>) -> Branch {
+    /// Ends the trace at the point handed out last; keeps the first `events` special points.
+    pub(crate) fn cut(&mut self, events: usize, reason: StopReason, detail: String) {
+        self.events.truncate(events);
+        self.queue.clear();
+        self.end(reason, detail);
+    }
+
+    /// Ends the trace after the points that are computed already.
+    pub(crate) fn interrupt(&mut self) {
+        if self.stop.is_none() {
+            self.end(StopReason::Interrupted, "interrupted".to_owned());
+        }
+    }
+
+    pub(crate) fn into_branch(self, points: Vec<Point>) -> Branch {
         let problem = self.core.problem;
         let stopped =
             self.stop.unwrap_or(Stop { reason: StopReason::Interrupted, detail: String::new() });

@@ -164,6 +164,14 @@ impl<'a, P: Problem> Tracer<'a, P> {
         if on_old >= along || turned >= tangents {
             return Err(Refusal::OldBranch);
         }
+        let outside = |(lo, hi): (f64, f64)| {
+            current.p == lo && trial.p < lo || current.p == hi && trial.p > hi
+        };
+        if settings.domain.is_some_and(outside) {
+            let detail = "the branch leaves the domain at its start".to_owned();
+            self.end(StopReason::Domain, detail);
+            return Ok(());
+        }
         self.detector.detect(current, trial, h, core.weights.parameter, false)?;
         let s_trial = self.metric_distance();
         let special = self.locate_all(h, false)?;

@@ -1,0 +1,284 @@
+//! The exploration: which ray is followed next, and what a traced branch adds.
+
+use super::follow::follow;
+use super::joints::Joints;
+use super::settings::DiagramSettings;
+use super::{Diagram, DiagramBranch, DiagramError, DiagramProgress, DiagramStop, Origin};
+use crate::branch::{Branch, EventKind, Statistics, Stop, StopReason};
+use crate::events::Watch;
+use crate::problem::Problem;
+use crate::settings::Settings;
+use crate::tracer::{Progress, TraceError, Tracer, both_ways};
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+
+/// What is to be followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Task {
+    Start,
+    Ray { node: usize, ray: usize, depth: usize },
+}
+
+/// Told of every point; may stop the exploration.
+pub(super) type Observer<'o> = dyn FnMut(&DiagramProgress) -> ControlFlow<()> + 'o;
+
+/// Explores a diagram branch by branch.
+pub struct Explorer<'a, P: Problem> {
+    problem: &'a P,
+    parameter: String,
+    start: (Vec<f64>, Vec<f64>),
+    settings: DiagramSettings,
+    watches: Vec<Watch>,
+    branches: Vec<DiagramBranch>,
+    joints: Joints,
+    queue: VecDeque<Task>,
+    stopped: Option<DiagramStop>,
+}
+
+impl<'a, P: Problem> Explorer<'a, P> {
+    /// Prepares the diagram of the branch through the solution near `u`, in the named parameter.
+    /// `u`, `p` and `parameter` are those of [`Tracer::new`]; `watches` hold on every branch.
+    ///
+    /// # Errors
+    /// When the settings or the start are unusable, or nothing bounds the parameter.
+    pub fn new(
+        problem: &'a P,
+        parameter: &str,
+        u: &[f64],
+        p: &[f64],
+        settings: DiagramSettings,
+        watches: &[Watch],
+    ) -> Result<Self, DiagramError> {
+        settings.validate()?;
+        if settings.trace.target.is_none() && settings.trace.domain.is_none() {
+            return Err(DiagramError::Unbounded);
+        }
+        // what is wrong with the start shows here
+        Tracer::new(problem, parameter, u, p, settings.trace.clone())?.watching(watches)?;
+        Ok(Explorer {
+            problem,
+            parameter: parameter.to_owned(),
+            start: (u.to_vec(), p.to_vec()),
+            settings,
+            watches: watches.to_vec(),
+            branches: Vec::new(),
+            joints: Joints::new(1.0),
+            queue: VecDeque::from([Task::Start]),
+            stopped: None,
+        })
+    }
+
+    /// Goes on after branches that were traced before, in another process for example: the first
+    /// ones of [`Diagram::branches`] of the same problem with the same settings.
+    ///
+    /// # Errors
+    /// When the branches cannot be those of this diagram.
+    pub fn resume(mut self, finished: Vec<DiagramBranch>) -> Result<Self, DiagramError> {
+        for (k, one) in finished.into_iter().enumerate() {
+            let foreign = |what| DiagramError::Foreign { branch: k, what };
+            if one.branch.parameter != self.parameter {
+                return Err(foreign("it was traced in another parameter"));
+            }
+            if one.branch.points.iter().any(|point| point.u.len() != self.problem.dim()) {
+                return Err(foreign("it has another number of unknowns"));
+            }
+            let Some(task) = self.pop() else {
+                return Err(foreign("there is nothing left to be followed"));
+            };
+            if self.origin(&task) != one.origin {
+                return Err(foreign("another branch comes next"));
+            }
+            self.add(task, one.branch);
+        }
+        Ok(self)
+    }
+
+    /// The branches so far.
+    pub fn branches(&self) -> &[DiagramBranch] {
+        &self.branches
+    }
+
+    /// Traces one more branch; `None` when the exploration has ended. A branch that the observer
+    /// interrupts is the last one, and holds what was traced of it.
+    ///
+    /// # Errors
+    /// When the first branch cannot be traced.
+    pub fn next_branch(
+        &mut self,
+        observer: &mut Observer<'_>,
+    ) -> Result<Option<&DiagramBranch>, DiagramError> {
+        if self.stopped.is_some() {
+            return Ok(None);
+        }
+        let Some(task) = self.pop() else {
+            self.stopped = Some(DiagramStop::Complete);
+            return Ok(None);
+        };
+        if self.branches.len() >= self.settings.max_branches {
+            self.stopped = Some(DiagramStop::MaxBranches);
+            return Ok(None);
+        }
+        let (branches, waiting) = (self.branches.len(), self.waiting());
+        let branch =
+            self.trace(&task, &mut |at| observer(&DiagramProgress { branches, waiting, at: *at }))?;
+        let interrupted = |stop: &Stop| stop.reason == StopReason::Interrupted;
+        if interrupted(&branch.stopped) || branch.began.as_ref().is_some_and(interrupted) {
+            self.stopped = Some(DiagramStop::Interrupted);
+        }
+        self.add(task, branch);
+        Ok(self.branches.last())
+    }
+
+    /// Explores to the end.
+    ///
+    /// # Errors
+    /// When the first branch cannot be traced.
+    pub fn run(mut self, observer: &mut Observer<'_>) -> Result<Diagram, DiagramError> {
+        while self.next_branch(observer)?.is_some() {}
+        Ok(self.finish())
+    }
+
+    /// The diagram as far as it has come.
+    pub fn finish(self) -> Diagram {
+        Diagram {
+            joints: self.joints.report(),
+            branches: self.branches,
+            stopped: self.stopped.unwrap_or(DiagramStop::Interrupted),
+        }
+    }
+
+    /// Rays that wait, as far as is known.
+    fn waiting(&self) -> usize {
+        self.queue.iter().filter(|task| self.is_open(task)).count()
+    }
+
+    fn is_open(&self, task: &Task) -> bool {
+        match *task {
+            Task::Start => true,
+            Task::Ray { node, ray, .. } => !self.joints.nodes[node].rays[ray].taken,
+        }
+    }
+
+    fn pop(&mut self) -> Option<Task> {
+        loop {
+            let task = self.queue.pop_front()?;
+            if self.is_open(&task) {
+                return Some(task);
+            }
+        }
+    }
+
+    fn origin(&self, task: &Task) -> Origin {
+        match *task {
+            Task::Start => Origin::Start,
+            Task::Ray { node, ray, .. } => {
+                let node = &self.joints.nodes[node];
+                let (branch, event) = node.found;
+                let (direction, forward) = node.rays[ray].leaving.unwrap_or((0, true));
+                Origin::Switch { branch, event, direction, forward }
+            }
+        }
+    }
+
+    fn trace(
+        &self,
+        task: &Task,
+        observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<Branch, DiagramError> {
+        let (problem, watches) = (self.problem, &self.watches[..]);
+        let settings = self.settings.trace.clone();
+        let Origin::Switch { branch, event, direction, forward } = self.origin(task) else {
+            let (u, p) = &self.start;
+            if settings.target.is_none() {
+                return Ok(both_ways(problem, &self.parameter, u, p, settings, watches, observer)?);
+            }
+            let tracer = Tracer::new(problem, &self.parameter, u, p, settings)?;
+            return Ok(tracer.watching(watches)?.run(observer));
+        };
+        let settings = self.within(settings);
+        let from = &self.branches[branch].branch;
+        let event = &from.events[event];
+        let leaving = |crossing: &crate::branch::Crossing| {
+            let direction = &crossing.leaving[direction];
+            Tracer::leaving(problem, from, event, direction, forward, settings)?.watching(watches)
+        };
+        let foreign = TraceError::Foreign { what: "the event is no branch point" };
+        Ok(match event.crossing().ok_or(foreign).and_then(leaving) {
+            Ok(tracer) => follow(problem, tracer, &self.joints, observer),
+            // a branch that cannot be begun is reported as one of a single point
+            Err(error) => {
+                let mut point = from.points[event.point].clone();
+                (point.s, point.event) = (0.0, None);
+                let detail = error.to_string();
+                Branch {
+                    parameter: from.parameter.clone(),
+                    parameters: from.parameters.clone(),
+                    observables: from.observables.clone(),
+                    points: vec![point],
+                    events: Vec::new(),
+                    stopped: Stop { reason: StopReason::StepTooSmall, detail },
+                    began: None,
+                    statistics: Statistics::default(),
+                }
+            }
+        })
+    }
+
+    /// Settings of a branch other than the first.
+    fn within(&self, settings: Settings) -> Settings {
+        let domain = settings.domain.or_else(|| self.branches.first().map(|one| hull(&one.branch)));
+        Settings { target: None, increasing: None, domain, ..settings }
+    }
+
+    /// Takes account of a traced branch.
+    fn add(&mut self, task: Task, branch: Branch) {
+        let id = self.branches.len();
+        let origin = self.origin(&task);
+        let depth = match task {
+            Task::Start => {
+                let (lo, hi) = self.settings.trace.domain.unwrap_or_else(|| hull(&branch));
+                let width = if (hi - lo).is_finite() { hi - lo } else { hull_width(&branch) };
+                self.joints = Joints::new(if width > 0.0 { width } else { 1.0 });
+                0
+            }
+            Task::Ray { node, ray, depth } => {
+                let closed = branch.stopped.reason == StopReason::ClosedLoop;
+                self.joints.begin(self.problem, id, (node, ray), closed);
+                depth
+            }
+        };
+        for (k, event) in branch.events.iter().enumerate() {
+            let Some(crossing) = event.crossing() else { continue };
+            if event.kind != EventKind::BranchPoint {
+                continue;
+            }
+            let last = event.point + 1 == branch.points.len();
+            let ends = last && branch.stopped.reason == StopReason::Retraced;
+            let node = self.joints.pass(self.problem, id, &branch, k, crossing, ends);
+            if depth < self.settings.depth {
+                self.enqueue(node, depth + 1);
+            }
+        }
+        self.branches.push(DiagramBranch { id, origin, depth, branch });
+    }
+
+    fn enqueue(&mut self, node: usize, depth: usize) {
+        for (ray, one) in self.joints.nodes[node].rays.iter_mut().enumerate() {
+            if !one.taken && !one.waits && one.leaving.is_some() {
+                one.waits = true;
+                self.queue.push_back(Task::Ray { node, ray, depth });
+            }
+        }
+    }
+}
+
+/// The interval of the parameter that a branch covers.
+fn hull(branch: &Branch) -> (f64, f64) {
+    let values = branch.points.iter().map(|point| point.p);
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))
+}
+
+fn hull_width(branch: &Branch) -> f64 {
+    let (lo, hi) = hull(branch);
+    hi - lo
+}

@@ -1,0 +1,59 @@
+//! One branch of a diagram.
+
+use super::joints::Joints;
+use crate::branch::{Branch, EventKind, Point, StopReason};
+use crate::problem::Problem;
+use crate::tracer::{Progress, Tracer};
+use std::ops::ControlFlow;
+
+/// Traces to the end, or to a joint from which the branch would go on along a ray that is taken.
+pub(super) fn follow<P: Problem>(
+    problem: &P,
+    mut tracer: Tracer<'_, P>,
+    joints: &Joints,
+    observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> Branch {
+    let mut points: Vec<Point> = Vec::new();
+    let mut interrupted = false;
+    while let Some(point) = tracer.next() {
+        let known =
+            point.event.filter(|event| leads_back(problem, &tracer, *event, &point, joints));
+        let progress = Progress {
+            points: points.len() + 1,
+            events: tracer.events().len(),
+            p: point.p,
+            s: point.s,
+        };
+        points.push(point);
+        if let Some(event) = known {
+            let detail = "the branch goes on as one that is known already".to_owned();
+            tracer.cut(event + 1, StopReason::Retraced, detail);
+            break;
+        }
+        if !interrupted && observer(&progress).is_break() {
+            interrupted = true;
+            tracer.interrupt();
+        }
+    }
+    tracer.into_branch(points)
+}
+
+/// Whether the branch goes on from this point along a ray that is taken.
+fn leads_back<P: Problem>(
+    problem: &P,
+    tracer: &Tracer<'_, P>,
+    event: usize,
+    point: &Point,
+    joints: &Joints,
+) -> bool {
+    let event = &tracer.events()[event];
+    let Some(crossing) = event.crossing().filter(|_| event.kind == EventKind::BranchPoint) else {
+        return false;
+    };
+    let Some(node) = joints.find(problem, &point.u, event.p, event.error_estimate) else {
+        return false;
+    };
+    let traced = (&crossing.traced.du[..], crossing.traced.dp);
+    let ahead = joints.ray(problem, node, traced, 1.0);
+    ahead.is_some_and(|ray| joints.nodes[node].rays[ray].taken)
+}
