@@ -158,8 +158,53 @@ fn resumed_after_any_number_of_branches_it_is_the_same() {
     for kept in 0..=whole.branches.len() {
         let start = Explorer::new(&Chain, "p", &u, &p, settings.clone(), &[]);
         let finished = whole.branches[..kept].to_vec();
-        let resumed = start.unwrap().resume(finished).unwrap();
-        assert_eq!(resumed.run(&mut |_| ControlFlow::Continue(())).unwrap(), whole, "{kept}");
+        let resumed = start.unwrap().resume(finished, None).unwrap();
+        assert!(resumed.run(&mut |_| ControlFlow::Continue(())).unwrap() == whole, "{kept}");
+    }
+}
+
+#[test]
+fn stopped_and_resumed_within_branches_it_is_the_same() {
+    let settings = DiagramSettings { depth: 2, ..within(-1.0, 1.0) };
+    let target = Settings { target: Some(1.0), ..settings.trace.clone() };
+    let settings = DiagramSettings { trace: target, ..settings };
+    let new = || Explorer::new(&Chain, "p", &[0.0; 3], &[-1.0], settings.clone(), &[]).unwrap();
+    let whole = new().run(&mut |_| ControlFlow::Continue(())).unwrap();
+    // killed after every few points: each time only what was handed out is kept
+    for every in [1, 2, 7, 20] {
+        let (mut finished, mut unfinished) =
+            (Vec::new(), None::<continuation::diagram::Unfinished>);
+        let mut lives = 0;
+        let all = loop {
+            lives += 1;
+            let mut explorer = new().resume(finished.clone(), unfinished.take()).unwrap();
+            let (mut left, mut killed) = (every, false);
+            while explorer
+                .next_branch(&mut |at| {
+                    left -= 1;
+                    if left > 0 || killed {
+                        return ControlFlow::Continue(());
+                    }
+                    killed = true;
+                    unfinished = at.unfinished();
+                    assert_eq!(unfinished.as_ref().unwrap().points().len(), at.at.points);
+                    ControlFlow::Break(())
+                })
+                .unwrap()
+                .is_some()
+            {}
+            if !killed {
+                break explorer.finish();
+            }
+            let done = explorer.branches();
+            finished = done[..done.len() - 1].to_vec();
+            // through a file and back
+            let mut bytes = Vec::new();
+            ciborium::into_writer(&(&finished, &unfinished), &mut bytes).unwrap();
+            (finished, unfinished) = ciborium::from_reader(&bytes[..]).unwrap();
+        };
+        assert!(all == whole, "{every}");
+        assert!(lives > 3);
     }
 }
 
@@ -231,7 +276,7 @@ fn branches_of_another_diagram_are_refused() {
     assert!(matches!(diagram.branches[1].origin, Origin::Switch { branch: 0, event: 0, .. }));
     let finished = vec![diagram.branches[1].clone()];
     let explorer = Explorer::new(&one, "p", &[0.0], &[-1.0], within(-1.0, 1.0), &[]).unwrap();
-    let error = explorer.resume(finished).err().unwrap();
+    let error = explorer.resume(finished, None).err().unwrap();
     assert!(matches!(error, DiagramError::Foreign { branch: 0, .. }), "{error}");
     let wide = DenseProblem::from_residual(2, &["p"], |u, p, r| {
         r[0] = p[0] - u[0];
@@ -239,7 +284,7 @@ fn branches_of_another_diagram_are_refused() {
     });
     let explorer =
         Explorer::new(&wide, "p", &[-1.0, 0.0], &[-1.0], within(-1.0, 1.0), &[]).unwrap();
-    let error = explorer.resume(diagram.branches).err().unwrap();
+    let error = explorer.resume(diagram.branches, None).err().unwrap();
     assert!(matches!(error, DiagramError::Foreign { branch: 0, .. }), "{error}");
     let unbounded = Explorer::new(&other, "p", &[0.0], &[-1.0], DiagramSettings::default(), &[]);
     assert_eq!(unbounded.err(), Some(DiagramError::Unbounded));

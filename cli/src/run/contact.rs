@@ -5,7 +5,7 @@ use super::{Observer, RunError, listen, settings};
 use crate::case::{ContactCase, Law, ResolvedCase};
 use crate::output::{ContactRow, EventRecord, Pictures, Table, TraceResult};
 use crate::pictures::{Curve, Mark, Profile, Shape};
-use continuation::Point;
+use continuation::{Point, Settings, TraceError};
 use shell_contact::{ContactBranch, ContactProblem, Dimensionless, Mesh, Shell, trace_contact};
 use std::time::Instant;
 
@@ -22,23 +22,38 @@ pub(super) fn run(
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
     let clock = Instant::now();
-    let problem = problem(contact)
-        .map_err(|error| RunError::Parameters { case: case.name.clone(), error })?;
-    let mut path = settings(&case.path);
-    path.max_step = path.max_step.or(Some(SMOOTH.max(path.min_step.unwrap_or(0.0))));
-    let traced = trace_contact(&problem, case.path.start, path, &mut listen(observer)).map_err(
-        |detail| RunError::NoStart {
-            case: case.name.clone(),
-            start: case.path.start,
-            detail,
-            remedy: "start farther from the shell (a film that attracts strongly pulls a soft \
-                         shell onto the plate: try a larger path.start)",
-        },
-    )?;
+    let problem = problem(case, contact)?;
+    let start = case.path.start;
+    let traced = trace_contact(&problem, start, path(case), &mut listen(observer))
+        .map_err(|detail| no_start(case, detail))?;
     let seconds = clock.elapsed().as_secs_f64();
-    let (table, events) = tabulate(&traced);
+    let pictures = pictures(&case.name, &problem, &traced);
+    Ok(TraceResult { pictures, ..result(case, &traced, seconds) })
+}
+
+/// The tracer's settings.
+pub(super) fn path(case: &ResolvedCase) -> Settings {
+    let path = settings(&case.path);
+    let max_step = path.max_step.or(Some(SMOOTH.max(path.min_step.unwrap_or(0.0))));
+    Settings { max_step, ..path }
+}
+
+/// No first point.
+pub(super) fn no_start(case: &ResolvedCase, detail: TraceError) -> RunError {
+    RunError::NoStart {
+        case: case.name.clone(),
+        start: case.path.start,
+        detail,
+        remedy: "start farther from the shell (a film that attracts strongly pulls a soft \
+                 shell onto the plate: try a larger path.start)",
+    }
+}
+
+/// A traced branch as plain numbers, without pictures.
+pub(super) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) -> TraceResult {
+    let (table, events) = tabulate(traced);
     let branch = &traced.branch;
-    Ok(TraceResult {
+    TraceResult {
         case: case.name.clone(),
         parameter: branch.parameter.clone(),
         table,
@@ -49,11 +64,19 @@ pub(super) fn run(
         certified: certified(branch),
         newton_iterations: branch.statistics.newton_iterations,
         seconds,
-        pictures: pictures(&case.name, &problem, &traced),
-    })
+        pictures: Pictures::default(),
+    }
 }
 
-fn problem(contact: &ContactCase) -> Result<ContactProblem, shell_contact::ParameterError> {
+/// The problem that a case describes.
+pub(super) fn problem(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+) -> Result<ContactProblem, RunError> {
+    build(contact).map_err(|error| RunError::Parameters { case: case.name.clone(), error })
+}
+
+fn build(contact: &ContactCase) -> Result<ContactProblem, shell_contact::ParameterError> {
     let law = match contact.shell.law {
         Law::Hooke => shell_contact::Law::Hooke,
         Law::MooneyRivlin { b } => shell_contact::Law::MooneyRivlin { b },

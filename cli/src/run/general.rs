@@ -6,6 +6,7 @@ use crate::case::{CatalogueCase, CatalogueEntry, CatalogueParameter, ElementRang
 use crate::output::Pictures;
 use crate::output::{EventRecord, Table, TraceResult};
 use crate::pictures::{Curve, Mark};
+use continuation::{Branch, TraceError};
 use problems::{Constant, Entry, ProblemError, Request};
 use std::time::Instant;
 
@@ -41,6 +42,18 @@ pub(super) fn run(
     problem: &CatalogueCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
+    let clock = Instant::now();
+    let (entry, request) = request(case, problem)?;
+    let branch =
+        entry.trace(&request, &mut listen(observer)).map_err(|error| refused(case, error))?;
+    Ok(result(case, &branch, clock.elapsed().as_secs_f64()))
+}
+
+/// The entry of the catalogue, and what the case asks of it.
+pub(super) fn request(
+    case: &ResolvedCase,
+    problem: &CatalogueCase,
+) -> Result<(&'static Entry, Request), RunError> {
     let entry = problems::find(&problem.name).ok_or_else(|| RunError::NotAvailable {
         case: case.name.clone(),
         problem: problem.name.clone(),
@@ -54,20 +67,31 @@ pub(super) fn run(
         elements: problem.elements.unwrap_or(entry.request().elements),
         settings: settings(&case.path),
     };
-    let clock = Instant::now();
-    let branch = entry.trace(&request, &mut listen(observer)).map_err(|error| match error {
-        ProblemError::Trace(detail) => RunError::NoStart {
-            case: case.name.clone(),
-            start: case.path.start,
-            detail,
-            remedy: "choose another start or other parameters",
-        },
-        error => RunError::Problem { case: case.name.clone(), error },
-    })?;
-    let seconds = clock.elapsed().as_secs_f64();
+    Ok((entry, request))
+}
 
+/// Why there is no result, in the case's words.
+pub(super) fn refused(case: &ResolvedCase, error: ProblemError) -> RunError {
+    match error {
+        ProblemError::Trace(detail) => no_start(case, detail),
+        error => RunError::Problem { case: case.name.clone(), error },
+    }
+}
+
+/// No first point.
+pub(super) fn no_start(case: &ResolvedCase, detail: TraceError) -> RunError {
+    RunError::NoStart {
+        case: case.name.clone(),
+        start: case.path.start,
+        detail,
+        remedy: "choose another start or other parameters",
+    }
+}
+
+/// A traced branch as plain numbers.
+pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> TraceResult {
     let names: Vec<&str> = branch.observables.iter().map(String::as_str).collect();
-    let stability = StabilityColumns::of(&branch);
+    let stability = StabilityColumns::of(branch);
     let mut table = Table::general(&branch.parameter, &names).and(stability.titles());
     for (index, point) in branch.points.iter().enumerate() {
         let kind = point.event.map(|e| branch.events[e].kind.to_string()).unwrap_or_default();
@@ -96,7 +120,7 @@ pub(super) fn run(
             residual: Some(event.residual),
             error_estimate: Some(event.error_estimate),
             observables: named.collect(),
-            form: form(&branch, event),
+            form: form(branch, event),
             ..EventRecord::default()
         });
         curve.marks.push(Mark {
@@ -110,7 +134,7 @@ pub(super) fn run(
         diagram: Some((branch.parameter.clone(), curve.label.clone(), curve)),
         ..Pictures::default()
     };
-    Ok(TraceResult {
+    TraceResult {
         case: case.name.clone(),
         parameter: branch.parameter.clone(),
         table,
@@ -118,9 +142,9 @@ pub(super) fn run(
         stopped_because: branch.stopped.reason,
         stopped_detail: branch.stopped.detail.clone(),
         points: branch.points.len(),
-        certified: certified(&branch),
+        certified: certified(branch),
         newton_iterations: branch.statistics.newton_iterations,
         seconds,
         pictures,
-    })
+    }
 }

@@ -1,9 +1,11 @@
 //! The exploration: which ray is followed next, and what a traced branch adds.
 
-use super::follow::follow;
+use super::follow::{Listener, follow};
 use super::joints::Joints;
 use super::settings::DiagramSettings;
-use super::{Diagram, DiagramBranch, DiagramError, DiagramProgress, DiagramStop, Origin};
+use super::{
+    Diagram, DiagramBranch, DiagramError, DiagramProgress, DiagramStop, Origin, Unfinished,
+};
 use crate::branch::{Branch, EventKind, Statistics, Stop, StopReason};
 use crate::events::Watch;
 use crate::problem::Problem;
@@ -20,7 +22,7 @@ enum Task {
 }
 
 /// Told of every point; may stop the exploration.
-pub(super) type Observer<'o> = dyn FnMut(&DiagramProgress) -> ControlFlow<()> + 'o;
+pub(super) type Observer<'o> = dyn FnMut(&DiagramProgress<'_>) -> ControlFlow<()> + 'o;
 
 /// Explores a diagram branch by branch.
 pub struct Explorer<'a, P: Problem> {
@@ -32,6 +34,7 @@ pub struct Explorer<'a, P: Problem> {
     branches: Vec<DiagramBranch>,
     joints: Joints,
     queue: VecDeque<Task>,
+    unfinished: Option<Unfinished>,
     stopped: Option<DiagramStop>,
 }
 
@@ -64,16 +67,22 @@ impl<'a, P: Problem> Explorer<'a, P> {
             branches: Vec::new(),
             joints: Joints::new(1.0),
             queue: VecDeque::from([Task::Start]),
+            unfinished: None,
             stopped: None,
         })
     }
 
     /// Goes on after branches that were traced before, in another process for example: the first
-    /// ones of [`Diagram::branches`] of the same problem with the same settings.
+    /// ones of [`Diagram::branches`] of the same problem with the same settings. `unfinished`, if it is
+    /// there, is the one that followed them; it is traced on from where it stands.
     ///
     /// # Errors
     /// When the branches cannot be those of this diagram.
-    pub fn resume(mut self, finished: Vec<DiagramBranch>) -> Result<Self, DiagramError> {
+    pub fn resume(
+        mut self,
+        finished: Vec<DiagramBranch>,
+        unfinished: Option<Unfinished>,
+    ) -> Result<Self, DiagramError> {
         for (k, one) in finished.into_iter().enumerate() {
             let foreign = |what| DiagramError::Foreign { branch: k, what };
             if one.branch.parameter != self.parameter {
@@ -90,6 +99,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
             }
             self.add(task, one.branch);
         }
+        self.unfinished = unfinished;
         Ok(self)
     }
 
@@ -119,8 +129,11 @@ impl<'a, P: Problem> Explorer<'a, P> {
             return Ok(None);
         }
         let (branches, waiting) = (self.branches.len(), self.waiting());
-        let branch =
-            self.trace(&task, &mut |at| observer(&DiagramProgress { branches, waiting, at: *at }))?;
+        let origin = self.origin(&task);
+        let unfinished = self.unfinished.take().filter(|one| one.origin == origin);
+        let branch = self.trace(&task, unfinished, &mut |at, part| {
+            observer(&DiagramProgress { branches, waiting, at: *at, origin, part })
+        })?;
         let interrupted = |stop: &Stop| stop.reason == StopReason::Interrupted;
         if interrupted(&branch.stopped) || branch.began.as_ref().is_some_and(interrupted) {
             self.stopped = Some(DiagramStop::Interrupted);
@@ -183,17 +196,22 @@ impl<'a, P: Problem> Explorer<'a, P> {
     fn trace(
         &self,
         task: &Task,
-        observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+        unfinished: Option<Unfinished>,
+        observer: &mut Listener<'_>,
     ) -> Result<Branch, DiagramError> {
+        let part = unfinished.map(|one| one.part);
         let (problem, watches) = (self.problem, &self.watches[..]);
         let settings = self.settings.trace.clone();
         let Origin::Switch { branch, event, direction, forward } = self.origin(task) else {
             let (u, p) = &self.start;
             if settings.target.is_none() {
-                return Ok(both_ways(problem, &self.parameter, u, p, settings, watches, observer)?);
+                let name = &self.parameter;
+                let mut hear = |at: &Progress| observer(at, None);
+                return Ok(both_ways(problem, name, u, p, settings, watches, &mut hear)?);
             }
-            let tracer = Tracer::new(problem, &self.parameter, u, p, settings)?;
-            return Ok(tracer.watching(watches)?.run(observer));
+            let tracer =
+                Tracer::new(problem, &self.parameter, u, p, settings)?.watching(watches)?;
+            return Ok(follow(problem, tracer, part, &self.joints, observer));
         };
         let settings = self.within(settings);
         let from = &self.branches[branch].branch;
@@ -204,7 +222,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
         };
         let foreign = TraceError::Foreign { what: "the event is no branch point" };
         Ok(match event.crossing().ok_or(foreign).and_then(leaving) {
-            Ok(tracer) => follow(problem, tracer, &self.joints, observer),
+            Ok(tracer) => follow(problem, tracer, part, &self.joints, observer),
             // a branch that cannot be begun is reported as one of a single point
             Err(error) => {
                 let mut point = from.points[event.point].clone();

@@ -3,17 +3,34 @@
 use super::joints::Joints;
 use crate::branch::{Branch, EventKind, Point, StopReason};
 use crate::problem::Problem;
-use crate::tracer::{Progress, Tracer};
+use crate::tracer::{Progress, Snapshot, Tracer};
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
-/// Traces to the end, or to a joint from which the branch would go on along a ray that is taken.
+/// A branch that is not finished: its points so far, and where its trace stands.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Part {
+    pub(super) points: Vec<Point>,
+    pub(super) state: Snapshot,
+}
+
+/// Told of every point, and offered a copy of the trace as it stands; may stop it.
+pub(super) type Listener<'o> =
+    dyn FnMut(&Progress, Option<&dyn Fn() -> Part>) -> ControlFlow<()> + 'o;
+
+/// Traces to the end from the beginning or from `part`, or to a joint from which the branch would go on along a ray that is taken.
 pub(super) fn follow<P: Problem>(
     problem: &P,
     mut tracer: Tracer<'_, P>,
+    part: Option<Part>,
     joints: &Joints,
-    observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    observer: &mut Listener<'_>,
 ) -> Branch {
     let mut points: Vec<Point> = Vec::new();
+    if let Some(part) = part.filter(|part| tracer.fits(&part.state)) {
+        points = part.points;
+        tracer.restore(part.state);
+    }
     let mut interrupted = false;
     while let Some(point) = tracer.next() {
         let known =
@@ -30,7 +47,8 @@ pub(super) fn follow<P: Problem>(
             tracer.cut(event + 1, StopReason::Retraced, detail);
             break;
         }
-        if !interrupted && observer(&progress).is_break() {
+        let copy = || Part { points: points.clone(), state: tracer.snapshot() };
+        if !interrupted && observer(&progress, Some(&copy)).is_break() {
             interrupted = true;
             tracer.interrupt();
         }

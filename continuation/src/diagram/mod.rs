@@ -39,8 +39,9 @@
 //! branches.
 //!
 //! # Going on later
-//! A diagram is its branches, in order: [`Explorer::resume`] takes those that are finished and goes on
-//! as if it had traced them. What is kept on disk is the caller's affair.
+//! A diagram is its branches, in order: [`Explorer::resume`] takes those that are finished, and the one
+//! that is not ([`DiagramProgress::unfinished`]), and goes on as if it had traced them. What is kept on
+//! disk is the caller's affair; the format must know NaN.
 //!
 //! # Reference
 //! - M. E. Henderson, Multiple parameter continuation, *International Journal of Bifurcation and
@@ -54,9 +55,10 @@ mod settings;
 pub use explorer::Explorer;
 pub use settings::DiagramSettings;
 
-use crate::branch::{Branch, Statistics};
+use crate::branch::{Branch, Point, Statistics};
 use crate::settings::SettingsError;
 use crate::tracer::{Progress, TraceError};
+use follow::Part;
 use serde::{Deserialize, Serialize};
 
 /// Where a branch of a diagram begins.
@@ -147,14 +149,39 @@ impl Diagram {
 }
 
 /// What an observer is told after every point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DiagramProgress {
+#[derive(Clone, Copy)]
+pub struct DiagramProgress<'p> {
     /// Branches that are finished.
     pub branches: usize,
     /// Rays that wait to be followed.
     pub waiting: usize,
     /// Where the branch that is traced at the moment stands.
     pub at: Progress,
+    origin: Origin,
+    part: Option<&'p dyn Fn() -> Part>,
+}
+
+impl DiagramProgress<'_> {
+    /// A copy of the branch that is traced at the moment, with which [`Explorer::resume`] goes on in
+    /// the middle of it. Costs as much as the branch has points; `None` where a branch is followed
+    /// both ways, which is traced again from its beginning.
+    pub fn unfinished(&self) -> Option<Unfinished> {
+        self.part.map(|part| Unfinished { origin: self.origin, part: part() })
+    }
+}
+
+/// A branch that is not finished.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Unfinished {
+    origin: Origin,
+    part: Part,
+}
+
+impl Unfinished {
+    /// Its points so far.
+    pub fn points(&self) -> &[Point] {
+        &self.part.points
+    }
 }
 
 /// Why there is no diagram.

@@ -136,6 +136,16 @@ impl Detector {
         })
     }
 
+    /// Largest magnitude of each observable so far.
+    pub(crate) fn magnitudes(&self) -> &[f64] {
+        &self.magnitude
+    }
+
+    /// Sets the magnitudes of observables.
+    pub(crate) fn set_magnitudes(&mut self, magnitude: Vec<f64>) {
+        self.magnitude = magnitude;
+    }
+
     /// Learns the magnitudes of observables from an accepted state.
     pub(crate) fn learn(&mut self, x: &State) {
         for (m, v) in self.magnitude.iter_mut().zip(&x.values) {

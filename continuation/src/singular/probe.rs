@@ -7,9 +7,10 @@
 use crate::linalg::Matrix;
 use crate::problem::{EvalError, ParamId, Problem, check_finite};
 use crate::step::{Weights, dot};
+use serde::{Deserialize, Serialize};
 
 /// A vector of unknowns and continued parameter.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Extended {
     pub(crate) u: Vec<f64>,
     pub(crate) p: f64,

@@ -365,6 +365,16 @@ impl<'a, P: Problem> Core<'a, P> {
         along
     }
 
+    /// What the count of unstable modes remembers of the latest state.
+    pub(crate) fn counted(&self) -> usize {
+        self.stability.last
+    }
+
+    /// Sets what it remembers.
+    pub(crate) fn set_counted(&mut self, last: usize) {
+        self.stability.last = last;
+    }
+
     /// Asks for the slopes of these observables from now on, and at `x` at once.
     pub(crate) fn want(
         &mut self,

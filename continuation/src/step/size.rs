@@ -2,9 +2,10 @@
 
 use super::judge::Quality;
 use crate::settings::Settings;
+use serde::{Deserialize, Serialize};
 
 /// The step length in scaled arclength, with its limits in the problem's metric.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StepSize {
     /// Next step.
     pub(crate) h: f64,

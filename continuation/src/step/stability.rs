@@ -18,7 +18,7 @@ pub(crate) struct StabilityCount<P: Problem> {
     wanted: usize,
     solver: ModeSolver<P>,
     /// Number of unstable ones among the latest few eigenvalues.
-    last: usize,
+    pub(super) last: usize,
 }
 
 impl<P: Problem> StabilityCount<P> {

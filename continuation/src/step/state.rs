@@ -1,7 +1,9 @@
 //! A solution with its tangent and everything that events are read from.
 
+use serde::{Deserialize, Serialize};
+
 /// A solution on the branch. Storage is allocated once and reused.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     /// Unknowns.
     pub(crate) u: Vec<f64>,

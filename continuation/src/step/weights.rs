@@ -5,8 +5,10 @@
 //! in pascals one of them would count for nothing. The scaled metric divides `u` and `p` by
 //! their ranges, so that the tracer does the same under `u → b u`, `p → c p`.
 
+use serde::{Deserialize, Serialize};
+
 /// Divisors of the unknowns and of the parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Weights {
     /// Scale of the unknowns, in the problem's metric.
     pub(crate) unknowns: f64,

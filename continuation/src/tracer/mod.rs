@@ -18,11 +18,13 @@
 mod both_ways;
 mod closure;
 mod input;
+mod snapshot;
 mod special;
 mod switching;
 
 pub use both_ways::both_ways;
 pub use input::{Progress, TraceError};
+pub(crate) use snapshot::Snapshot;
 
 use crate::branch::{Branch, Event, Point, Statistics, Stop, StopReason};
 use crate::events::{Detector, Watch};

@@ -12,8 +12,10 @@ use crate::problem::{ParamId, Problem};
 use crate::settings::Settings;
 use crate::singular::Extended;
 use crate::step::{Constraint, Core, Precision, Refusal, State, Weights, dot, judge};
+use serde::{Deserialize, Serialize};
 
 /// Which way the new branch leaves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Departure {
     /// Tangent of the branch that led here, as a covector of the scaled metric times its length.
     old: Extended,
