@@ -26,6 +26,8 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Follow a branch; write its points, special points and pictures
     Trace(TraceArguments),
+    /// Follow a branch and all that leave it; write them as one diagram
+    Diagram(DiagramArguments),
     /// Print a case with every default written out, or say what is wrong with it
     Check(CaseArguments),
     /// List the cases and problems that have names
@@ -83,4 +85,41 @@ pub(crate) struct TraceArguments {
     /// No progress, no summary, no notes
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+/// Which case, and what to do with its diagram.
+#[derive(Debug, Args)]
+pub(crate) struct DiagramArguments {
+    /// Which case.
+    #[command(flatten)]
+    pub(crate) case: CaseArguments,
+    /// Most branch points between a branch and the first one, as --set diagram.depth=N
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) depth: Option<String>,
+    /// Folder for the results, made if missing [default: ./arclen-out/CASE]
+    ///
+    /// While a diagram is explored its state is kept in DIR/unfinished; the same command goes on
+    /// from it.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Begin anew, even if the folder holds an unfinished diagram
+    #[arg(long)]
+    pub(crate) restart: bool,
+    /// Print diagram.json on standard output; without --out, write no files
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Draw no pictures
+    #[arg(long)]
+    pub(crate) no_pictures: bool,
+    /// No progress, no summary, no notes
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+impl DiagramArguments {
+    /// The case, with the depth among its overrides.
+    pub(crate) fn overrides(&self) -> Vec<Override> {
+        let depth = self.depth.iter().map(|depth| Override::depth(depth));
+        self.case.overrides().into_iter().chain(depth).collect()
+    }
 }

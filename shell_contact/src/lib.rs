@@ -50,4 +50,4 @@ pub use observables::{Observation, Profile};
 pub use params::{
     Dimensionless, Law, ParameterError, Physical, Scales, Shell, Stiffness, default_gas_exponent,
 };
-pub use trace::{ContactBranch, trace_contact};
+pub use trace::{ContactBranch, force_watches, trace_contact};

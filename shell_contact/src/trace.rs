@@ -2,7 +2,7 @@
 
 use crate::contact::ContactProblem;
 use crate::film::Potential;
-use continuation::{Branch, EventKind, Problem, Progress, Settings, TraceError, Tracer, Watch};
+use continuation::{Branch, EventKind, Progress, Settings, TraceError, Tracer, Watch};
 use std::ops::ControlFlow;
 
 /// Name of the special point of most attractive force.
@@ -18,6 +18,15 @@ pub struct ContactBranch {
 }
 
 impl ContactBranch {
+    /// A branch that was traced with [`force_watches`]; `zero_force` is where deformation counts
+    /// from, by default the branch's own first zero of the force.
+    pub fn new(mut branch: Branch, zero_force: Option<f64>) -> Self {
+        name_pull_off(&mut branch);
+        let zero = EventKind::Zero("force".to_owned());
+        let own = branch.events_of(&zero).next().map(|event| event.p);
+        ContactBranch { zero_force: zero_force.or(own), branch }
+    }
+
     /// Deformation `d̂ = ẑ0(F = 0) − ẑ0`, Eq. (19): plate against equator, one pole.
     pub fn deformation(&self, z0: f64) -> Option<f64> {
         self.zero_force.map(|zero| zero - z0)
@@ -37,18 +46,19 @@ pub fn trace_contact<F: Potential>(
     observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<ContactBranch, TraceError> {
     let (u, p) = (problem.initial_state(), problem.parameters_at(start));
-    let watches = [Watch::zero("force"), Watch::extremum("force")];
-    let tracer = Tracer::new(problem, "z0", &u, &p, settings)?.watching(&watches)?;
-    let mut branch = tracer.run(observer);
-    name_pull_off(&mut branch, problem.observables());
-    let zero = EventKind::Zero("force".to_owned());
-    let zero_force = branch.events_of(&zero).next().map(|event| event.p);
-    Ok(ContactBranch { branch, zero_force })
+    let tracer = Tracer::new(problem, "z0", &u, &p, settings)?.watching(&force_watches())?;
+    Ok(ContactBranch::new(tracer.run(observer), None))
+}
+
+/// What is watched on a contact branch: zeros and extrema of the force.
+pub fn force_watches() -> [Watch; 2] {
+    [Watch::zero("force"), Watch::extremum("force")]
 }
 
 /// Renames the lowest minimum of the force below zero.
-fn name_pull_off(branch: &mut Branch, observables: &[&str]) {
-    let Some(force) = observables.iter().position(|name| *name == "force") else { return };
+fn name_pull_off(branch: &mut Branch) {
+    let force = branch.observables.iter().position(|name| name == "force");
+    let Some(force) = force else { return };
     let minimum = EventKind::Minimum("force".to_owned());
     let value = |k: usize| branch.points[branch.events[k].point].observables[force];
     let lowest = (0..branch.events.len())

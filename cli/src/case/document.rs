@@ -94,6 +94,11 @@ impl Override {
         Override { flag: "--eigenvalues", text: format!("path.eigenvalues={count}") }
     }
 
+    /// `--depth N`.
+    pub(crate) fn depth(count: &str) -> Self {
+        Override { flag: "--depth", text: format!("diagram.depth={count}") }
+    }
+
     fn error(&self, message: impl Into<String>) -> LoadError {
         LoadError::Override { flag: self.flag, text: shown(&self.text), message: message.into() }
     }

@@ -32,6 +32,8 @@ pub(crate) struct ResolvedCase {
     pub(crate) problem: ProblemCase,
     /// Which part of the branch is traced.
     pub(crate) path: PathCase,
+    /// How far its diagram is explored.
+    pub(crate) diagram: DiagramCase,
 }
 
 /// What is solved.
@@ -161,6 +163,24 @@ pub(crate) struct PathCase {
     pub(crate) max_points: usize,
     /// Number of eigenvalues to compute at every point.
     pub(crate) eigenvalues: usize,
+}
+
+/// How far a diagram is explored.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct DiagramCase {
+    /// Most branch points between a branch and the first one.
+    pub(crate) depth: usize,
+    /// Most branches.
+    pub(crate) max_branches: usize,
+    /// Bounds of the parameter, in which the first branch is followed both ways; without them it
+    /// goes from the path's start to its end, and the others stay where it has been.
+    pub(crate) within: Option<(f64, f64)>,
+}
+
+impl Default for DiagramCase {
+    fn default() -> Self {
+        DiagramCase { depth: 2, max_branches: 1000, within: None }
+    }
 }
 
 /// What the command line needs to know about a problem of the catalogue.

@@ -5,8 +5,8 @@ use super::error::{CaseError, Complaint};
 use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
 use super::reader::{ANY, Allowed, NOT_NEGATIVE, POSITIVE, Reader, Section};
 use super::{
-    CatalogueCase, CatalogueEntry, ContactCase, ElementRange, Groups, Law, LoadedCase, MeshCase,
-    PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
+    CatalogueCase, CatalogueEntry, ContactCase, DiagramCase, ElementRange, Groups, Law, LoadedCase,
+    MeshCase, PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
 };
 use crate::closest::closest;
 use crate::units::{self, Dimension};
@@ -29,6 +29,7 @@ const PHYSICAL: &[&str] = &[
 ];
 const MESH: &[&str] = &["elements", "grading"];
 const PATH: &[&str] = &["start", "end", "max_step", "min_step", "max_points", "eigenvalues"];
+const DIAGRAM: &[&str] = &["depth", "max_branches", "from", "to"];
 
 /// Where a key may be at home, for those that stand in the wrong table.
 const HOMES: &[(&str, &[&str])] = &[
@@ -37,6 +38,7 @@ const HOMES: &[(&str, &[&str])] = &[
     ("physical", PHYSICAL),
     ("mesh", MESH),
     ("path", PATH),
+    ("diagram", DIAGRAM),
 ];
 
 const GAS_EXPONENT: f64 = 1.07;
@@ -114,7 +116,8 @@ impl<'a> Resolver<'a> {
                 }
             },
         };
-        let case = ResolvedCase { name: name?, problem: problem?, path: path? };
+        let diagram = path.as_ref().and_then(|path| self.diagram(path));
+        let case = ResolvedCase { name: name?, problem: problem?, path: path?, diagram: diagram? };
         Some(LoadedCase { case, notes: self.notes })
     }
 
@@ -138,7 +141,8 @@ impl<'a> Resolver<'a> {
     }
 
     fn contact(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
-        let tables = ["name", "problem", "shell", "dimensionless", "physical", "mesh", "path"];
+        let tables =
+            ["name", "problem", "shell", "dimensionless", "physical", "mesh", "path", "diagram"];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
         let dimensionless = self.table("dimensionless", DIMENSIONLESS);
@@ -173,7 +177,7 @@ impl<'a> Resolver<'a> {
     }
 
     fn ring_load(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
-        let tables = ["name", "problem", "shell", "dimensionless", "mesh", "path"];
+        let tables = ["name", "problem", "shell", "dimensionless", "mesh", "path", "diagram"];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
         let groups = self.table("dimensionless", RING_GROUPS);
@@ -191,7 +195,11 @@ impl<'a> Resolver<'a> {
     }
 
     fn entry(&mut self, entry: &CatalogueEntry) -> (Option<ProblemCase>, Option<PathCase>) {
-        self.reader.only(self.root, &["name", "problem", "parameters", "mesh", "path"], HOMES);
+        self.reader.only(
+            self.root,
+            &["name", "problem", "parameters", "mesh", "path", "diagram"],
+            HOMES,
+        );
         let section = self.reader.section(self.root, "parameters");
         let names: Vec<&str> = entry.parameters.iter().map(|one| one.name.as_str()).collect();
         self.reader.only(section, &names, &[("path", &[entry.parameter.as_str()])]);
@@ -436,6 +444,37 @@ impl<'a> Resolver<'a> {
             max_points: max_points?,
             eigenvalues: eigenvalues?,
         })
+    }
+
+    fn diagram(&self, path: &PathCase) -> Option<DiagramCase> {
+        let section = self.table("diagram", DIAGRAM);
+        let default = DiagramCase::default();
+        let count = |key, least, most, default| match section.get(key) {
+            None => Some(default),
+            Some(_) => self.reader.count(section, key, least, most),
+        };
+        let depth = count("depth", 0, 100, default.depth);
+        let max_branches = count("max_branches", 1, 1_000_000, default.max_branches);
+        let (from, to) = (section.get("from"), section.get("to"));
+        let bounds = if from.is_some() || to.is_some() {
+            let from = self.reader.required(section, "from", ANY);
+            let to = self.reader.required(section, "to", ANY);
+            Some((from?, to?))
+        } else {
+            None
+        };
+        let within = bounds.map(|(a, b)| (a.min(b), a.max(b)));
+        if let (Some((low, high)), Some(node)) = (within, from)
+            && (low == high || !(low..=high).contains(&path.start))
+        {
+            let allowed = format!(
+                "such that path.start, which is {:?}, lies from it to diagram.to",
+                path.start
+            );
+            self.reader.refuse(section, "from", node, Complaint::OutOfRange { allowed });
+            return None;
+        }
+        Some(DiagramCase { depth: depth?, max_branches: max_branches?, within })
     }
 
     /// A number in a range of the catalogue, with a default.

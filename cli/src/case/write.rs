@@ -1,6 +1,8 @@
 //! A resolved case as a case file again: everything written out, nothing left to defaults.
 
-use super::{ContactCase, Groups, MeshCase, PathCase, ProblemCase, ResolvedCase, ShellCase};
+use super::{
+    ContactCase, DiagramCase, Groups, MeshCase, PathCase, ProblemCase, ResolvedCase, ShellCase,
+};
 use super::{Law, PhysicalCase, Stiffness};
 use std::fmt::Write as _;
 
@@ -35,6 +37,7 @@ impl ResolvedCase {
             }
         }
         path(&mut out, &self.path);
+        diagram(&mut out, &self.diagram);
         out.0
     }
 }
@@ -120,6 +123,16 @@ fn path(out: &mut Lines, path: &PathCase) {
     out.count("max_points", path.max_points);
     if path.eigenvalues > 0 {
         out.count("eigenvalues", path.eigenvalues);
+    }
+}
+
+fn diagram(out: &mut Lines, diagram: &DiagramCase) {
+    out.table("diagram");
+    out.count("depth", diagram.depth);
+    out.count("max_branches", diagram.max_branches);
+    if let Some((low, high)) = diagram.within {
+        out.number("from", low);
+        out.number("to", high);
     }
 }
 

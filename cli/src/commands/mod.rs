@@ -2,12 +2,13 @@
 
 mod check;
 mod completions;
+mod diagram;
 mod list;
 mod progress;
 mod trace;
 
 use crate::arguments::{Arguments, CaseArguments, Command};
-use crate::case::{LoadedCase, load};
+use crate::case::{LoadedCase, Override, load};
 use crate::exit::Exit;
 use crate::{run, terminal};
 
@@ -15,6 +16,7 @@ use crate::{run, terminal};
 pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
     match &arguments.command {
         Command::Trace(arguments) => trace::trace(arguments),
+        Command::Diagram(arguments) => diagram::diagram(arguments),
         Command::Check(arguments) => check::check(arguments),
         Command::List => list::list(),
         Command::Completions { shell } => completions::completions(*shell),
@@ -22,8 +24,12 @@ pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
 }
 
 /// The case asked for, or the exit code after saying what is wrong with it.
-fn loaded(arguments: &CaseArguments, quiet: bool) -> Result<LoadedCase, Exit> {
-    let loaded = load(&arguments.case, &arguments.overrides(), &run::catalogue());
+fn loaded(
+    arguments: &CaseArguments,
+    overrides: &[Override],
+    quiet: bool,
+) -> Result<LoadedCase, Exit> {
+    let loaded = load(&arguments.case, overrides, &run::catalogue());
     let loaded = loaded.map_err(|error| {
         terminal::error(&error);
         Exit::BadInput

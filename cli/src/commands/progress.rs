@@ -1,7 +1,7 @@
 //! Progress of a trace on a terminal, and the wish to stop.
 
 use crate::case::PathCase;
-use crate::run::Progress;
+use crate::run::{DiagramProgress, Progress};
 use crate::terminal;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ops::ControlFlow;
@@ -13,14 +13,14 @@ const LENGTH: u64 = 1000;
 /// Shows progress and asks for a stop after Ctrl-C.
 pub(super) struct Observer {
     bar: Option<ProgressBar>,
-    path: PathCase,
+    path: Option<PathCase>,
     farthest: f64,
     stop: Arc<AtomicBool>,
 }
 
 impl Observer {
     /// An observer; a quiet one, or one whom nobody watches, shows nothing.
-    pub(super) fn new(path: PathCase, quiet: bool) -> Self {
+    pub(super) fn new(path: Option<PathCase>, quiet: bool) -> Self {
         let stop = Arc::new(AtomicBool::new(false));
         let heard = Arc::clone(&stop);
         // the second Ctrl-C does not wait for the current step
@@ -34,7 +34,9 @@ impl Observer {
         }
         let bar = (!quiet && terminal::watched()).then(|| {
             let bar = ProgressBar::new(LENGTH);
-            if let Ok(style) = ProgressStyle::with_template("{bar:32} {msg}") {
+            // how far a diagram is from its end nobody knows
+            let template = if path.is_some() { "{bar:32} {msg}" } else { "{elapsed} {msg}" };
+            if let Ok(style) = ProgressStyle::with_template(template) {
                 bar.set_style(style);
             }
             bar
@@ -44,8 +46,8 @@ impl Observer {
 
     /// Hear of a point; say whether to go on.
     pub(super) fn hear(&mut self, progress: Progress) -> ControlFlow<()> {
-        if let Some(bar) = &self.bar {
-            let PathCase { start, end, .. } = self.path;
+        if let (Some(bar), Some(path)) = (&self.bar, self.path) {
+            let PathCase { start, end, .. } = path;
             let done = ((progress.parameter - start) / (end - start)).clamp(0.0, 1.0);
             // a branch that turns back has not lost ground
             self.farthest = self.farthest.max(done);
@@ -55,6 +57,24 @@ impl Observer {
                 progress.points, progress.events, progress.parameter
             ));
         }
+        self.wish()
+    }
+
+    /// Hear of a point of a diagram; say whether to go on.
+    pub(super) fn hear_of_diagram(&self, progress: DiagramProgress) -> ControlFlow<()> {
+        if let Some(bar) = &self.bar {
+            bar.set_message(format!(
+                "{} branches, {} waiting; on this one {} points, at {:.5}",
+                progress.branches,
+                progress.waiting,
+                progress.branch.points,
+                progress.branch.parameter
+            ));
+        }
+        self.wish()
+    }
+
+    fn wish(&self) -> ControlFlow<()> {
         if self.stop.load(Ordering::SeqCst) {
             ControlFlow::Break(())
         } else {

@@ -16,7 +16,7 @@ const CASE: &str = "case.toml";
 
 /// Trace a case.
 pub(super) fn trace(arguments: &TraceArguments) -> Exit {
-    let case = match super::loaded(&arguments.case, arguments.quiet) {
+    let case = match super::loaded(&arguments.case, &arguments.case.overrides(), arguments.quiet) {
         Ok(loaded) => loaded.case,
         Err(exit) => return exit,
     };
@@ -24,7 +24,7 @@ pub(super) fn trace(arguments: &TraceArguments) -> Exit {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
-    let mut observer = Observer::new(case.path, arguments.quiet);
+    let mut observer = Observer::new(Some(case.path), arguments.quiet);
     let outcome = run_trace(&case, &mut |progress| observer.hear(progress));
     observer.finish();
     match outcome {

@@ -37,9 +37,10 @@ impl Serialize for Document<'_> {
     }
 }
 
-struct EventOf<'a> {
-    event: &'a EventRecord,
-    parameter: &'a str,
+/// A special point with the name of its parameter.
+pub(super) struct EventOf<'a> {
+    pub(super) event: &'a EventRecord,
+    pub(super) parameter: &'a str,
 }
 
 impl Serialize for EventOf<'_> {

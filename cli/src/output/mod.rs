@@ -1,5 +1,7 @@
 //! What a trace hands over, and how it becomes files and tables.
 
+mod checkpoint;
+mod diagram;
 mod events;
 mod folder;
 mod number;
@@ -10,6 +12,8 @@ mod table;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub(crate) use checkpoint::Checkpoint;
+pub(crate) use diagram::{BranchRecord, DiagramResult, From, diagram_json, diagram_summary};
 pub(crate) use events::events_json;
 pub(crate) use folder::Folder;
 pub(crate) use result::{Cell, ContactRow, EventRecord, FormRecord, Table};

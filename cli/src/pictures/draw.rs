@@ -30,6 +30,42 @@ pub(super) fn diagram(title: &str, x: &str, y: &str, curve: &Curve) -> Result<St
     chart(title, x, y, std::slice::from_ref(curve)).svg()
 }
 
+/// Branches of a diagram, each with its depth, which gives its colour.
+pub(super) fn branches(
+    title: &str,
+    x: &str,
+    y: &str,
+    curves: &[(usize, &Curve)],
+) -> Result<String, DrawError> {
+    let all: Vec<Curve> = curves.iter().map(|(_, curve)| (*curve).clone()).collect();
+    let Chart { x, y, marks, legend, .. } = chart(title, x, y, &all);
+    let markers = legend.into_iter().filter(|entry| matches!(entry, Entry::Marker { .. }));
+    let mut lines = Vec::new();
+    let mut entries = Vec::new();
+    let deepest = curves.iter().map(|(depth, _)| *depth).max().unwrap_or(0);
+    for level in 0..=deepest {
+        let color = of_state(level);
+        let here = curves.iter().filter(|(depth, _)| *depth == level);
+        // the first branch on top
+        let drawn = here.flat_map(|(_, curve)| curve_lines(curve, color, (x.unit, y.unit)));
+        lines.splice(0..0, drawn);
+        if deepest > 0 {
+            let label = match level {
+                0 => "first branch".to_owned(),
+                1 => "after one branch point".to_owned(),
+                n => format!("after {n} branch points"),
+            };
+            entries.push(Entry::Line { color, dashed: false, label });
+        }
+    }
+    if all.iter().any(Curve::has_unstable) {
+        let label = "unstable".to_string();
+        entries.push(Entry::Line { color: FAINT, dashed: true, label });
+    }
+    entries.extend(markers);
+    Chart { title: shown(title), x, y, lines, marks, legend: entries, size: WIDE }.svg()
+}
+
 /// Disjoining pressure against distance from the axis.
 pub(super) fn film_pressure(title: &str, profiles: &[Profile]) -> Result<String, DrawError> {
     let x = Axis::of("distance from the axis σ/R₀", values(profiles, |p| &p.sigma), 7);

@@ -16,7 +16,7 @@ pub(crate) use chart::DrawError;
 pub(crate) use data::Mark;
 pub(crate) use data::{Curve, Profile, Shape};
 
-use crate::output::Pictures;
+use crate::output::{DiagramResult, Pictures};
 
 /// Names of all pictures that a trace may write.
 pub(crate) const NAMES: [&str; 6] = [
@@ -27,6 +27,23 @@ pub(crate) const NAMES: [&str; 6] = [
     "energies.svg",
     "diagram.svg",
 ];
+
+/// Name of the picture of a whole diagram.
+pub(crate) const DIAGRAM: &str = "diagram.svg";
+
+/// All branches of a diagram as SVG; `None` where nothing can be drawn.
+///
+/// # Errors
+/// When the drawing library fails.
+pub(crate) fn draw_diagram(result: &DiagramResult) -> Result<Option<Vec<u8>>, DrawError> {
+    let curves: Vec<(usize, &Curve)> =
+        result.branches.iter().map(|branch| (branch.depth, &branch.curve)).collect();
+    if curves.iter().all(|(_, curve)| curve.y.iter().all(|y| !y.is_finite())) {
+        return Ok(None);
+    }
+    let (x, y) = &result.axes;
+    draw::branches(&result.case, x, y, &curves).map(|svg| Some(svg.into_bytes()))
+}
 
 /// All pictures for which there are data: file name and SVG.
 ///

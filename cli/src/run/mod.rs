@@ -2,6 +2,7 @@
 //! out.
 
 mod contact;
+mod diagram;
 mod form;
 mod general;
 
@@ -9,6 +10,8 @@ use crate::case::{CatalogueEntry, PathCase, ProblemCase, ResolvedCase};
 use crate::output::TraceResult;
 use continuation::{Settings, TraceError};
 use std::ops::ControlFlow;
+
+pub(crate) use diagram::{DiagramProgress, Keep, Saved, run_diagram};
 
 /// How far a trace has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,6 +54,14 @@ pub(crate) enum RunError {
         case: String,
         /// What it says.
         error: problems::ProblemError,
+    },
+    /// The diagram cannot be explored.
+    #[error("{case}: {error}")]
+    Diagram {
+        /// Name of the case.
+        case: String,
+        /// What happened.
+        error: continuation::diagram::DiagramError,
     },
     /// Not even the first point could be computed.
     #[error("{case}: path.start = {start}: {detail}; {remedy}")]

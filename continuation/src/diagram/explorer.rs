@@ -33,6 +33,8 @@ pub struct Explorer<'a, P: Problem> {
     watches: Vec<Watch>,
     branches: Vec<DiagramBranch>,
     joints: Joints,
+    // known as soon as the first branch is
+    domain: Option<(f64, f64)>,
     queue: VecDeque<Task>,
     unfinished: Option<Unfinished>,
     stopped: Option<DiagramStop>,
@@ -43,7 +45,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
     /// `u`, `p` and `parameter` are those of [`Tracer::new`]; `watches` hold on every branch.
     ///
     /// # Errors
-    /// When the settings or the start are unusable, or nothing bounds the parameter.
+    /// When the settings or the start are unusable, or nothing bounds the first branch.
     pub fn new(
         problem: &'a P,
         parameter: &str,
@@ -53,7 +55,9 @@ impl<'a, P: Problem> Explorer<'a, P> {
         watches: &[Watch],
     ) -> Result<Self, DiagramError> {
         settings.validate()?;
-        if settings.trace.target.is_none() && settings.trace.domain.is_none() {
+        let ends = |watch: &Watch| matches!(watch, Watch::Value { stop: true, .. });
+        let bounded = settings.trace.target.is_some() || settings.trace.domain.is_some();
+        if !bounded && !watches.iter().any(ends) {
             return Err(DiagramError::Unbounded);
         }
         // what is wrong with the start shows here
@@ -66,6 +70,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
             watches: watches.to_vec(),
             branches: Vec::new(),
             joints: Joints::new(1.0),
+            domain: None,
             queue: VecDeque::from([Task::Start]),
             unfinished: None,
             stopped: None,
@@ -204,7 +209,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
         let settings = self.settings.trace.clone();
         let Origin::Switch { branch, event, direction, forward } = self.origin(task) else {
             let (u, p) = &self.start;
-            if settings.target.is_none() {
+            if settings.target.is_none() && settings.domain.is_some() {
                 let name = &self.parameter;
                 let mut hear = |at: &Progress| observer(at, None);
                 return Ok(both_ways(problem, name, u, p, settings, watches, &mut hear)?);
@@ -244,8 +249,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
 
     /// Settings of a branch other than the first.
     fn within(&self, settings: Settings) -> Settings {
-        let domain = settings.domain.or_else(|| self.branches.first().map(|one| hull(&one.branch)));
-        Settings { target: None, increasing: None, domain, ..settings }
+        Settings { target: None, increasing: None, domain: self.domain, ..settings }
     }
 
     /// Takes account of a traced branch.
@@ -255,6 +259,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
         let depth = match task {
             Task::Start => {
                 let (lo, hi) = self.settings.trace.domain.unwrap_or_else(|| hull(&branch));
+                self.domain = Some((lo, hi)).filter(|(lo, hi)| lo < hi);
                 let width = if (hi - lo).is_finite() { hi - lo } else { hull_width(&branch) };
                 self.joints = Joints::new(if width > 0.0 { width } else { 1.0 });
                 0
@@ -281,8 +286,10 @@ impl<'a, P: Problem> Explorer<'a, P> {
     }
 
     fn enqueue(&mut self, node: usize, depth: usize) {
-        for (ray, one) in self.joints.nodes[node].rays.iter_mut().enumerate() {
-            if !one.taken && !one.waits && one.leaving.is_some() {
+        for ray in 0..self.joints.nodes[node].rays.len() {
+            let out = self.domain.is_some_and(|domain| self.joints.leads_out(node, ray, domain));
+            let one = &mut self.joints.nodes[node].rays[ray];
+            if !one.taken && !one.waits && !out && one.leaving.is_some() {
                 one.waits = true;
                 self.queue.push_back(Task::Ray { node, ray, depth });
             }

@@ -16,6 +16,8 @@ pub(super) struct Ray {
     /// Tangent away from the joint.
     du: Vec<f64>,
     dp: f64,
+    /// Where `dp` is 0, which way the parameter goes.
+    bend: f64,
     /// Which of [`Crossing::leaving`] of the event where the joint was found, and whether along it;
     /// `None` for the branch that was traced there.
     pub(super) leaving: Option<(usize, bool)>,
@@ -150,6 +152,7 @@ impl Joints {
             Ray {
                 du: d.du.iter().map(|x| sign * x).collect(),
                 dp: sign * d.dp,
+                bend: d.bend,
                 leaving: leaving.map(|k| (k, forward)),
                 taken: false,
                 waits: false,
@@ -190,6 +193,15 @@ impl Joints {
                 self.nodes[node].rays[back].taken = true;
             }
         }
+    }
+
+    /// Whether a ray leaves the domain where it begins.
+    pub(super) fn leads_out(&self, node: usize, ray: usize, (lo, hi): (f64, f64)) -> bool {
+        let node = &self.nodes[node];
+        let Ray { dp, bend, .. } = node.rays[ray];
+        let way = if dp == 0.0 { bend } else { dp };
+        let near = SAME * self.range + 10.0 * node.error;
+        (node.p - lo <= near && way < 0.0) || (hi - node.p <= near && way > 0.0)
     }
 
     /// What is known of the joints, for the reader.

@@ -194,8 +194,11 @@ pub enum DiagramError {
     /// The first branch cannot be traced.
     #[error(transparent)]
     Trace(#[from] TraceError),
-    /// Nothing bounds the parameter.
-    #[error("nothing bounds the diagram: give a domain of the parameter, or a target")]
+    /// Nothing bounds the first branch.
+    #[error(
+        "nothing bounds the diagram: give a domain of the parameter, a target, or an observable \
+         that stops"
+    )]
     Unbounded,
     /// Branches of another diagram.
     #[error("the finished branches are not those of this diagram: branch {branch}: {what}")]

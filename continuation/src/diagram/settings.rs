@@ -14,9 +14,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DiagramSettings {
-    /// How branches are traced. With a target the first branch goes from the start to it, one way;
-    /// without one it is followed both ways. All others stay in the domain; without one, in the
-    /// range of the parameter on the first branch.
+    /// How branches are traced. Without a target the first branch is followed both ways in the
+    /// domain; with one, or without a domain, one way to its end. All others stay in the domain;
+    /// without one, in the range of the parameter on the first branch.
     pub trace: Settings,
     /// Most branch points between a branch and the first one: with 0 there is only the first, with
     /// 1 also those that leave it.

@@ -49,6 +49,10 @@ pub(crate) fn locate<P: Problem>(
     {
         interpolate(a, b, h, bend, at, x);
         if core.correct(Constraint::Parameter(a, value), x, Precision::Event).is_ok() {
+            // the value itself, and not what is left of it after corrections
+            if (x.p - value).abs() <= 1e-14 * (value.abs() + core.weights.parameter) {
+                x.p = value;
+            }
             return Ok(Located { at, error: f64::EPSILON * (1.0 + value.abs()) });
         }
     }

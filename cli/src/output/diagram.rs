@@ -1,0 +1,231 @@
+//! `diagram.json`: the branches of a diagram, how they hang together, and the table for people.
+
+use super::events::EventOf;
+use super::result::TraceResult;
+use super::summary::{aligned, count};
+use crate::pictures::Curve;
+use continuation::StopReason;
+use continuation::diagram::Joint;
+use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Where a branch begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum From {
+    /// At the start of the case.
+    Start,
+    /// At a special point of another branch.
+    Switch {
+        /// The other branch.
+        branch: usize,
+        /// Its event.
+        event: usize,
+    },
+}
+
+impl Serialize for From {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            From::Start => serializer.serialize_none(),
+            From::Switch { branch, event } => {
+                let mut map = serializer.serialize_map(Some(2))?;
+                map.serialize_entry("branch", branch)?;
+                map.serialize_entry("event", event)?;
+                map.end()
+            }
+        }
+    }
+}
+
+/// A branch of a diagram.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct BranchRecord {
+    /// Its number.
+    pub(crate) id: usize,
+    /// Where it begins.
+    pub(crate) from: From,
+    /// How many branch points lie between it and the first.
+    pub(crate) depth: usize,
+    /// Why it ends at its first point, if that is an end.
+    pub(crate) began_because: Option<StopReason>,
+    /// The branch itself.
+    pub(crate) trace: TraceResult,
+    /// What is drawn of it.
+    pub(crate) curve: Curve,
+}
+
+impl BranchRecord {
+    /// The file with its points.
+    pub(crate) fn csv(&self) -> String {
+        format!("branch-{}.csv", self.id)
+    }
+}
+
+/// Everything that the exploration of a diagram hands over.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct DiagramResult {
+    /// Name of the case.
+    pub(crate) case: String,
+    /// Name of the continued parameter.
+    pub(crate) parameter: String,
+    /// The branches.
+    pub(crate) branches: Vec<BranchRecord>,
+    /// The branch points that join them.
+    pub(crate) joints: Vec<Joint>,
+    /// Why it ended, in a word.
+    pub(crate) stopped_because: &'static str,
+    /// The same in a sentence; may be empty.
+    pub(crate) stopped_detail: String,
+    /// Jacobian assemblies.
+    pub(crate) newton_iterations: usize,
+    /// Time spent on branches, in all runs.
+    pub(crate) seconds: f64,
+    /// Labels of the picture's axes.
+    pub(crate) axes: (String, String),
+}
+
+impl DiagramResult {
+    /// Whether everything that was asked for was computed.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.stopped_because == "complete"
+    }
+
+    fn points(&self) -> usize {
+        self.branches.iter().map(|one| one.trace.points).sum()
+    }
+}
+
+/// The JSON, indented, with a newline at the end; NaN and infinities are null.
+///
+/// # Errors
+/// What the writer reports; memory does not fail, so none is expected.
+pub(crate) fn diagram_json(result: &DiagramResult) -> Result<String, serde_json::Error> {
+    let mut text = serde_json::to_string_pretty(result)?;
+    text.push('\n');
+    Ok(text)
+}
+
+impl Serialize for DiagramResult {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let branches: Vec<BranchOf<'_>> = self.branches.iter().map(BranchOf).collect();
+        let joints: Vec<JointOf<'_>> = self.joints.iter().map(JointOf).collect();
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("case", &self.case)?;
+        map.serialize_entry("parameter", &self.parameter)?;
+        map.serialize_entry("branches", &branches)?;
+        map.serialize_entry("joints", &joints)?;
+        map.serialize_entry("stopped_because", self.stopped_because)?;
+        map.serialize_entry("stopped_detail", &self.stopped_detail)?;
+        map.serialize_entry("points", &self.points())?;
+        map.serialize_entry("newton_iterations", &self.newton_iterations)?;
+        map.serialize_entry("seconds", &self.seconds)?;
+        map.end()
+    }
+}
+
+struct BranchOf<'a>(&'a BranchRecord);
+
+impl Serialize for BranchOf<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let BranchRecord { id, from, depth, began_because, trace, .. } = self.0;
+        let parameter = &trace.parameter;
+        let events: Vec<EventOf<'_>> =
+            trace.events.iter().map(|event| EventOf { event, parameter }).collect();
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("id", id)?;
+        map.serialize_entry("from", from)?;
+        map.serialize_entry("depth", depth)?;
+        map.serialize_entry("csv", &self.0.csv())?;
+        map.serialize_entry("events", &events)?;
+        if let Some(reason) = began_because {
+            map.serialize_entry("began_because", &reason.to_string())?;
+        }
+        map.serialize_entry("stopped_because", &trace.stopped_because.to_string())?;
+        map.serialize_entry("stopped_detail", &trace.stopped_detail)?;
+        map.serialize_entry("points", &trace.points)?;
+        map.serialize_entry("certified", &trace.certified)?;
+        map.serialize_entry("newton_iterations", &trace.newton_iterations)?;
+        map.end()
+    }
+}
+
+struct JointOf<'a>(&'a Joint);
+
+impl Serialize for JointOf<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let passed = self.0.passed.iter();
+        let passed: Vec<From> =
+            passed.map(|&(branch, event)| From::Switch { branch, event }).collect();
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("passed", &passed)?;
+        map.serialize_entry("begun", &self.0.begun)?;
+        map.serialize_entry("open", &self.0.open)?;
+        map.end()
+    }
+}
+
+/// The table for people; `folder` is where the files went, if they went anywhere.
+pub(crate) fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> String {
+    let titles = ["branch", "from", "points", result.parameter.as_str(), "special points", "ends"];
+    let mut rows = vec![titles.map(str::to_owned).to_vec()];
+    for one in &result.branches {
+        let from = match one.from {
+            From::Start => "start".to_owned(),
+            From::Switch { branch, event } => format!("{branch}, event {event}"),
+        };
+        let (low, high) = range(&one.curve.x);
+        let mut ends = one.trace.stopped_because.to_string();
+        if let Some(began) = one.began_because {
+            ends = format!("{began}, {ends}");
+        }
+        rows.push(vec![
+            one.id.to_string(),
+            from,
+            one.trace.points.to_string(),
+            format!("{low} to {high}"),
+            kinds(&one.trace),
+            ends,
+        ]);
+    }
+    let mut out = aligned(&rows);
+    out.push('\n');
+    let _ = write!(out, "{}: {}", result.case, result.stopped_because);
+    if !result.stopped_detail.is_empty() {
+        let _ = write!(out, " ({})", result.stopped_detail);
+    }
+    let _ = writeln!(
+        out,
+        "; {}, {}, {} points, {} Newton iterations, {:.2} s",
+        count(result.branches.len(), "branch", "branches"),
+        count(result.joints.len(), "joint", "joints"),
+        result.points(),
+        result.newton_iterations,
+        result.seconds
+    );
+    if let Some(folder) = folder {
+        let _ = writeln!(out, "written to {}", folder.display());
+    }
+    out
+}
+
+fn range(values: &[f64]) -> (String, String) {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    (super::number::rounded(low), super::number::rounded(high))
+}
+
+/// How many special points of which kinds.
+fn kinds(trace: &TraceResult) -> String {
+    let mut found: Vec<(&str, usize)> = Vec::new();
+    for event in &trace.events {
+        match found.iter_mut().find(|(kind, _)| *kind == event.kind) {
+            Some((_, n)) => *n += 1,
+            None => found.push((&event.kind, 1)),
+        }
+    }
+    let words = found.iter().map(|(kind, n)| format!("{n} {kind}"));
+    let words = words.collect::<Vec<_>>().join(", ");
+    if words.is_empty() { "–".to_owned() } else { words }
+}

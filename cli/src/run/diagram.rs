@@ -1,0 +1,254 @@
+//! Whole diagrams, of every kind of problem.
+
+use super::{RunError, contact, general};
+use crate::case::{ProblemCase, ResolvedCase};
+use crate::output::{BranchRecord, DiagramResult, From, TraceResult};
+use crate::pictures::{Curve, Mark};
+use continuation::diagram::{
+    Diagram, DiagramBranch, DiagramError, DiagramSettings, DiagramStop, Explorer, Origin,
+    Unfinished,
+};
+use continuation::{Branch, Problem, Settings, StopReason};
+use problems::{Setup, Visitor};
+use shell_contact::{ContactBranch, force_watches};
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// How far a diagram has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct DiagramProgress {
+    /// Branches that are finished.
+    pub(crate) branches: usize,
+    /// Branches that are known to wait.
+    pub(crate) waiting: usize,
+    /// The branch that is traced at the moment.
+    pub(crate) branch: super::Progress,
+}
+
+/// Told of every point; may stop the exploration.
+type Observer<'o> = dyn FnMut(DiagramProgress) -> ControlFlow<()> + 'o;
+
+/// What was computed of a diagram before.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Saved {
+    /// The branches that are finished.
+    pub(crate) finished: Vec<DiagramBranch>,
+    /// The one that is not.
+    pub(crate) unfinished: Option<Unfinished>,
+    /// Time spent.
+    pub(crate) seconds: f64,
+}
+
+/// Keeps what is computed, so that nothing is lost if the program is killed.
+pub(crate) trait Keep {
+    /// A branch is finished; `seconds` is the time spent so far.
+    fn branch(&mut self, branch: &DiagramBranch, seconds: f64);
+    /// Whether it is time to keep a branch that is not finished.
+    fn is_due(&self) -> bool;
+    /// The branch that is not finished, after so many that are.
+    fn unfinished(&mut self, after: usize, branch: &Unfinished, seconds: f64);
+}
+
+struct Exploration<'e, 'o> {
+    settings: DiagramSettings,
+    saved: Saved,
+    keep: &'e mut dyn Keep,
+    observer: &'e mut Observer<'o>,
+    clock: Instant,
+}
+
+impl Exploration<'_, '_> {
+    fn run<P: Problem>(self, problem: &P, setup: &Setup) -> Result<(Diagram, f64), DiagramError> {
+        let Exploration { settings, saved, keep, observer, clock } = self;
+        let (name, u, p) = (setup.parameter, &setup.u, &setup.p);
+        let explorer = Explorer::new(problem, name, u, p, settings, &setup.watches)?;
+        let mut explorer = explorer.resume(saved.finished, saved.unfinished)?;
+        let seconds = || saved.seconds + clock.elapsed().as_secs_f64();
+        loop {
+            let traced = explorer.next_branch(&mut |at| {
+                let wish = observer(DiagramProgress {
+                    branches: at.branches,
+                    waiting: at.waiting,
+                    branch: super::Progress {
+                        points: at.at.points,
+                        events: at.at.events,
+                        parameter: at.at.p,
+                    },
+                });
+                if (wish.is_break() || keep.is_due())
+                    && let Some(unfinished) = at.unfinished()
+                {
+                    keep.unfinished(at.branches, &unfinished, seconds());
+                }
+                wish
+            })?;
+            match traced {
+                Some(one) if interrupted(&one.branch) => {}
+                Some(one) => keep.branch(one, seconds()),
+                None => return Ok((explorer.finish(), seconds())),
+            }
+        }
+    }
+}
+
+fn interrupted(branch: &Branch) -> bool {
+    let mut ends = branch.began.iter().chain([&branch.stopped]);
+    ends.any(|stop| stop.reason == StopReason::Interrupted)
+}
+
+impl Visitor for Exploration<'_, '_> {
+    type Output = Result<(Diagram, f64), DiagramError>;
+
+    fn visit<P: Problem>(mut self, problem: &P, setup: Setup) -> Self::Output {
+        // as the entry says how its branch starts and ends, unless the case bounds it otherwise
+        let domain = self.settings.trace.domain;
+        let target = setup.settings.target.filter(|_| domain.is_none());
+        self.settings.trace = Settings { domain, target, ..setup.settings.clone() };
+        self.run(problem, &setup)
+    }
+}
+
+/// Explore the diagram of a case, from what was kept of it.
+///
+/// # Errors
+/// When there is no result at all, or what was kept is of another diagram.
+pub(crate) fn run_diagram(
+    case: &ResolvedCase,
+    saved: Saved,
+    keep: &mut dyn Keep,
+    observer: &mut Observer<'_>,
+) -> Result<DiagramResult, RunError> {
+    let clock = Instant::now();
+    let explore = |trace: Settings, keep, observer| {
+        let within = case.diagram.within;
+        let target = trace.target.filter(|_| within.is_none());
+        let settings = DiagramSettings {
+            trace: Settings { target, domain: within, ..trace },
+            depth: case.diagram.depth,
+            max_branches: case.diagram.max_branches,
+        };
+        Exploration { settings, saved, keep, observer, clock }
+    };
+    match &case.problem {
+        ProblemCase::Contact(contact) => {
+            let problem = contact::problem(case, contact)?;
+            let start = case.path.start;
+            let setup = Setup {
+                parameter: "z0",
+                u: problem.initial_state(),
+                p: problem.parameters_at(start).to_vec(),
+                settings: Settings::default(),
+                watches: force_watches().to_vec(),
+            };
+            let explored = explore(contact::path(case), keep, observer).run(&problem, &setup);
+            let (diagram, seconds) = explored.map_err(|error| match error {
+                DiagramError::Trace(detail) => contact::no_start(case, detail),
+                error => RunError::Diagram { case: case.name.clone(), error },
+            })?;
+            let mut zero = None;
+            Ok(result(case, diagram, seconds, ("plate distance z₀/R₀", "force F/√(χ k_b)"), &mut |branch| {
+                let traced = ContactBranch::new(branch, zero);
+                zero = traced.zero_force;
+                let curve = curve(&traced.branch, "force");
+                (contact::result(case, &traced, 0.0), curve)
+            }))
+        }
+        ProblemCase::RingLoad(_) => Err(RunError::NotAvailable {
+            case: case.name.clone(),
+            problem: "ring-load".to_string(),
+        }),
+        ProblemCase::Catalogue(problem) => {
+            let (entry, request) = general::request(case, problem)?;
+            let explored = entry
+                .visit(&request, explore(request.settings.clone(), keep, observer))
+                .map_err(|error| general::refused(case, error))?;
+            let (diagram, seconds) = explored.map_err(|error| match error {
+                DiagramError::Trace(detail) => general::no_start(case, detail),
+                error => RunError::Diagram { case: case.name.clone(), error },
+            })?;
+            let shown = diagram.branches.first().and_then(|one| one.branch.observables.first());
+            let shown = shown.cloned().unwrap_or_default();
+            let axes = (entry.parameter, &shown[..]);
+            Ok(result(case, diagram, seconds, axes, &mut |branch| {
+                let curve = curve(&branch, &shown);
+                (general::result(case, &branch, 0.0), curve)
+            }))
+        }
+    }
+}
+
+/// An observable over the parameter.
+fn curve(branch: &Branch, observable: &str) -> Curve {
+    let k = branch.observables.iter().position(|name| name == observable);
+    let value = |at: usize| k.map_or(f64::NAN, |k| branch.points[at].observables[k]);
+    let points = &branch.points;
+    Curve {
+        label: observable.to_owned(),
+        x: points.iter().map(|point| point.p).collect(),
+        y: (0..points.len()).map(value).collect(),
+        unstable: points.iter().map(|point| point.unstable.is_some_and(|n| n > 0)).collect(),
+        marks: branch
+            .events
+            .iter()
+            .map(|event| Mark { kind: event.kind.to_string(), x: event.p, y: value(event.point) })
+            .collect(),
+    }
+}
+
+/// A diagram as plain numbers.
+fn result(
+    case: &ResolvedCase,
+    diagram: Diagram,
+    seconds: f64,
+    (x, y): (&str, &str),
+    present: &mut dyn FnMut(Branch) -> (TraceResult, Curve),
+) -> DiagramResult {
+    let statistics = diagram.statistics();
+    let (stopped_because, stopped_detail) = ending(&diagram);
+    let parameter =
+        diagram.branches.first().map(|one| one.branch.parameter.clone()).unwrap_or_default();
+    let branches = diagram.branches.into_iter().map(|one| {
+        let began = one.branch.began.as_ref().map(|stop| stop.reason);
+        let (trace, curve) = present(one.branch);
+        let from = match one.origin {
+            Origin::Switch { branch, event, .. } => From::Switch { branch, event },
+            _ => From::Start,
+        };
+        BranchRecord { id: one.id, from, depth: one.depth, began_because: began, trace, curve }
+    });
+    DiagramResult {
+        case: case.name.clone(),
+        parameter,
+        branches: branches.collect(),
+        joints: diagram.joints,
+        stopped_because,
+        stopped_detail,
+        newton_iterations: statistics.newton_iterations,
+        seconds,
+        axes: (x.to_owned(), y.to_owned()),
+    }
+}
+
+/// Why a diagram ended, in a word and a sentence.
+fn ending(diagram: &Diagram) -> (&'static str, String) {
+    let open: usize = diagram.joints.iter().map(|joint| joint.open).sum();
+    match diagram.stopped {
+        DiagramStop::MaxBranches => (
+            "max-branches",
+            format!("the limit of {} branches was reached", diagram.branches.len()),
+        ),
+        DiagramStop::Interrupted => ("interrupted", String::new()),
+        _ => {
+            let unfinished = diagram.branches.iter().filter(|one| !one.branch.is_complete());
+            let count = unfinished.clone().count();
+            let detail = match (count, open) {
+                (0, 0) => "every branch was followed to its end".to_owned(),
+                (0, _) => format!(
+                    "{open} halves of branches leave the deepest ones; a larger diagram.depth follows them"
+                ),
+                _ => format!("{count} branches ended early; see theirs"),
+            };
+            (if count == 0 { "complete" } else { "incomplete" }, detail)
+        }
+    }
+}
