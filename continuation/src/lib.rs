@@ -2,6 +2,7 @@
 
 pub mod branch;
 pub mod codim2;
+pub mod deflation;
 mod dense_problem;
 mod derivative_check;
 #[cfg(feature = "dual")]
