@@ -13,7 +13,7 @@ pub(super) struct Known<'a, P: Problem> {
     problem: &'a P,
     /// The solutions.
     pub(super) solutions: Vec<Vec<f64>>,
-    /// The length by which distances are divided.
+    /// The length by which distances are divided; 0 until it is known.
     pub(super) length: f64,
     difference: Vec<f64>,
     metric: Vec<f64>,
@@ -25,7 +25,7 @@ impl<'a, P: Problem> Known<'a, P> {
         Known {
             problem,
             solutions: Vec::new(),
-            length: 1.0,
+            length: 0.0,
             difference: vec![0.0; n],
             metric: vec![0.0; n],
         }

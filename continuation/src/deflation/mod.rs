@@ -46,11 +46,13 @@
 //! - P. Deuflhard, *Newton Methods for Nonlinear Problems*, Springer, 2004.
 
 mod attempt;
+mod disconnected;
 mod known;
 mod passing;
 mod settings;
 mod starts;
 
+pub use disconnected::{OffBranch, disconnected, lies_on};
 pub use settings::DeflationSettings;
 
 use crate::branch::Branch;
@@ -94,6 +96,9 @@ pub enum DeflationError {
         /// The branch's parameter.
         name: String,
     },
+    /// Nothing to begin with.
+    #[error("no branch is known")]
+    NoBranch,
 }
 
 /// A solution that was found.
@@ -158,6 +163,8 @@ pub struct Deflation<'a, P: Problem> {
     p: Vec<f64>,
     settings: DeflationSettings,
     known: Known<'a, P>,
+    /// How far the branches lead from their starts.
+    extent: f64,
     /// Solutions of branches that Newton's method did not meet.
     unresolved: Vec<Passage>,
     starts: Vec<Start>,
@@ -188,6 +195,7 @@ impl<'a, P: Problem> Deflation<'a, P> {
             p: p.to_vec(),
             settings,
             known,
+            extent: 0.0,
             unresolved: Vec::new(),
             starts: Vec::new(),
         })
@@ -254,6 +262,9 @@ impl<'a, P: Problem> Deflation<'a, P> {
         let same = |k: usize| k == which || branch.parameters[k] == self.p[k];
         if (0..self.p.len()).all(same) {
             let found = passing::solutions(self.problem, branch, &self.p, which, &self.settings);
+            let extent = passing::extent(&mut self.known, branch);
+            self.extent = self.extent.max(extent);
+            self.known.length = self.known.length.max(extent);
             found.solutions.into_iter().for_each(|u| self.admit(u));
             self.unresolved.extend(found.unresolved);
         }
@@ -382,7 +393,7 @@ impl<'a, P: Problem> Deflation<'a, P> {
             return;
         }
         let known = std::mem::take(&mut self.known.solutions);
-        let mut length = 0.0_f64;
+        let mut length = self.extent;
         for (k, u) in known.iter().enumerate() {
             for other in &known[..k] {
                 length = length.max(self.known.distance(u, other));

@@ -48,6 +48,8 @@ pub(super) fn solutions<P: Problem>(
     settings: &DeflationSettings,
 ) -> Passing {
     let mut own = Known::new(problem);
+    let extent = extent(&mut own, branch);
+    own.length = extent;
     let mut solver = Solver::new(problem, p);
     let limits = settings.newton();
     let mut unresolved = Vec::new();
@@ -68,6 +70,7 @@ pub(super) fn solutions<P: Problem>(
         if chord > 0.0 && !own.solutions.is_empty() {
             own.length = chord;
             let tried = solver.attempt(&mut own, &passage.u, chord, Damping::Monotone, &limits);
+            own.length = extent;
             if tried.is_ok()
                 && passage.covers(&mut own, &solver.u)
                 && !own.contains(&solver.u, settings.separation)
@@ -79,6 +82,17 @@ pub(super) fn solutions<P: Problem>(
         unresolved.push(passage);
     }
     Passing { solutions: own.solutions, unresolved }
+}
+
+/// How far the branch leads from its first point.
+pub(super) fn extent<P: Problem>(known: &mut Known<'_, P>, branch: &Branch) -> f64 {
+    let Some(first) = branch.points.first() else { return 0.0 };
+    branch.points.iter().map(|point| known.distance(&point.u, &first.u)).fold(0.0, f64::max)
+}
+
+/// The branch's states at the parameter value `p`, interpolated.
+pub(super) fn states(branch: &Branch, p: f64) -> impl Iterator<Item = Vec<f64>> {
+    passages(branch, p).into_iter().map(|passage| passage.u)
 }
 
 /// The branch's solutions at the parameter value `p`, one for every passage, approximately.

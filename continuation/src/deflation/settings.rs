@@ -24,7 +24,7 @@ pub struct DeflationSettings {
     /// the same.
     pub separation: f64,
     /// The length `ℓ` by which distances from known solutions are divided; `None`: from the
-    /// distances between known solutions and from the amplitudes at which the Jacobian changes.
+    /// distances between known solutions, the branches and the amplitudes at which the Jacobian changes.
     pub length: Option<f64>,
     /// Number of near-null directions along which each known solution is perturbed.
     pub modes: usize,

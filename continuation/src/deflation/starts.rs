@@ -57,7 +57,8 @@ pub(super) fn soft<P: Problem>(
         orthonormalise(known, problem, &mut vectors);
     }
     let scale = known.norm(u);
-    let guess = if scale > 0.0 { scale } else { known.length };
+    let sizes = [scale, known.length, 1.0];
+    let guess = sizes.into_iter().find(|x| *x > 0.0).unwrap_or(1.0);
     let mut found: Vec<Soft> = Vec::new();
     for direction in vectors {
         let amplitude = amplitude(problem, u, p, &direction, guess);
