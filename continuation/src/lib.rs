@@ -2,6 +2,7 @@
 
 pub mod branch;
 pub mod codim2;
+pub mod deflation;
 mod dense_problem;
 mod derivative_check;
 pub mod diagram;
@@ -11,6 +12,7 @@ mod events;
 pub mod guide;
 pub mod linalg;
 mod modes;
+mod near;
 pub mod newton;
 pub mod problem;
 pub mod samples;
@@ -30,6 +32,7 @@ pub use dual_problem::{DualProblem, Number, Residual};
 pub use events::Watch;
 pub use linalg::{Facts, Matrix};
 pub use modes::{Modes, modes};
+pub use near::{NearBifurcation, NearError, NearKind, NearSettings, near_bifurcations};
 pub use newton::{NewtonError, NewtonReport, NewtonSettings, newton};
 pub use problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints, Stability};
 pub use settings::{Settings, SettingsError};

@@ -25,6 +25,8 @@ const CONVERGED: f64 = 1e-12;
 /// Corrections that no longer shrink are rounding if they are below this.
 const ROUNDING: f64 = 1e-8;
 
+/// Corrections longer than this, in natural amplitudes, lead astray.
+const LONGEST: f64 = 10.0;
 /// Points nearer to each other than this, in natural amplitudes, are one with a larger kernel.
 const COINCIDENT: f64 = 1e-8;
 
@@ -79,26 +81,30 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    fn new(n: usize, k: usize) -> Self {
+    pub(super) fn new(n: usize, k: usize) -> Self {
         Frame { k, bordered: Bordered::new(n, k + 1), rhs: vec![0.0; n], tail: vec![0.0; k + 1] }
     }
 
-    fn set_row(&mut self, i: usize, c: &Extended) {
+    pub(super) fn set_row(&mut self, i: usize, c: &Extended) {
         self.bordered.row_mut(i).copy_from_slice(&c.u);
         self.bordered.set_corner(i, 0, c.p);
     }
 
-    fn set_column(&mut self, j: usize, b: &[f64]) {
+    pub(super) fn set_column(&mut self, j: usize, b: &[f64]) {
         self.bordered.column_mut(j + 1).copy_from_slice(b);
     }
 
-    fn factor<P: Problem>(&mut self, probe: &mut Probe<'_, P>) {
+    pub(super) fn factor<P: Problem>(&mut self, probe: &mut Probe<'_, P>) {
         self.bordered.column_mut(0).copy_from_slice(&probe.by_parameter);
         self.bordered.factor(&mut probe.jacobian);
     }
 
     /// Column `i` of `V`, and of `G`.
-    fn right<P: Problem>(&mut self, probe: &mut Probe<'_, P>, i: usize) -> (Extended, Vec<f64>) {
+    pub(super) fn right<P: Problem>(
+        &mut self,
+        probe: &mut Probe<'_, P>,
+        i: usize,
+    ) -> (Extended, Vec<f64>) {
         self.rhs.fill(0.0);
         self.tail.fill(0.0);
         self.tail[i] = 1.0;
@@ -129,7 +135,7 @@ impl Frame {
 
     /// Borders by what the latest factors say is nearly in the kernels: the right vectors,
     /// orthonormalised, and the left ones, normalised.
-    fn renew<P: Problem>(&mut self, probe: &mut Probe<'_, P>) -> Option<()> {
+    pub(super) fn renew<P: Problem>(&mut self, probe: &mut Probe<'_, P>) -> Option<()> {
         let mut right: Vec<Extended> = Vec::with_capacity(self.k + 1);
         for i in 0..=self.k {
             let (mut v, _) = self.right(probe, i);
@@ -203,7 +209,8 @@ pub(crate) fn find<P: Problem>(
             step.add(*y, v);
             correction = correction.max(y.abs() / x);
         }
-        if !correction.is_finite() || (iteration > 3 && correction > 10.0 * last.max(CONVERGED)) {
+        let grows = iteration > 3 && correction > 10.0 * last.max(CONVERGED);
+        if correction.is_nan() || correction > LONGEST || grows {
             return Err(Failure::NoConvergence);
         }
         let size = 1.0 + probe.norm(&z) / widest;

@@ -5,6 +5,7 @@
 //! here turns the bracket into a point, or refuses: a change that no singular point on the branch
 //! explains was a jump, and the step must be shorter.
 
+mod defect;
 mod fold;
 mod forms;
 mod hopf;
@@ -14,9 +15,10 @@ mod probe;
 mod roots;
 mod small;
 
+pub(crate) use defect::Defect;
 pub(crate) use fold::fold_form;
 pub(crate) use hopf::locate_hopf;
-pub(crate) use kernel::arbitrary;
+pub(crate) use kernel::{arbitrary, find};
 pub(crate) use probe::{Extended, Probe};
 
 use crate::branch::Crossing;
