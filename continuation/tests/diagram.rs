@@ -112,6 +112,27 @@ fn hundreds_of_special_points() {
 }
 
 #[test]
+fn branches_that_an_imperfection_keeps_apart() {
+    for imperfection in [1e-2, 1e-3, 1e-5] {
+        let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| {
+            r[0] = p[0] * u[0] - u[0].powi(3) + imperfection;
+        });
+        let diagram = explore(&problem, &[0.0], &[-1.0], within(-1.0, 1.0));
+        assert!(diagram.is_complete());
+        assert_eq!(diagram.branches.len(), 2, "{imperfection}");
+        let other = &diagram.branches[1];
+        assert!(matches!(other.origin, Origin::Deflation { branch: 0, near: 0, .. }));
+        // one branch, from bound to bound, around its fold
+        let ends = [other.branch.points[0].p, other.branch.points.last().unwrap().p];
+        assert_eq!(ends, [1.0, 1.0]);
+        assert_eq!(other.branch.events_of(&EventKind::Fold).count(), 1);
+        nothing_twice(&diagram);
+        let none = DiagramSettings { search: None, ..within(-1.0, 1.0) };
+        assert_eq!(explore(&problem, &[0.0], &[-1.0], none).branches.len(), 1);
+    }
+}
+
+#[test]
 fn depth_bounds_the_exploration() {
     for (depth, branches) in [(0, 1), (1, 3), (2, 7), (3, 15)] {
         let settings = DiagramSettings { depth, ..within(-1.0, 1.0) };

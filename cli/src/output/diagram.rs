@@ -23,6 +23,13 @@ pub(crate) enum From {
         /// Its event.
         event: usize,
     },
+    /// At a solution found by deflation.
+    Deflation {
+        /// The branch beside which it was found.
+        branch: usize,
+        /// The parameter's value there.
+        parameter: f64,
+    },
 }
 
 impl Serialize for From {
@@ -33,6 +40,13 @@ impl Serialize for From {
                 let mut map = serializer.serialize_map(Some(2))?;
                 map.serialize_entry("branch", branch)?;
                 map.serialize_entry("event", event)?;
+                map.end()
+            }
+            From::Deflation { branch, parameter } => {
+                let mut map = serializer.serialize_map(Some(3))?;
+                map.serialize_entry("branch", branch)?;
+                map.serialize_entry("deflation", &true)?;
+                map.serialize_entry("parameter", parameter)?;
                 map.end()
             }
         }
@@ -174,6 +188,7 @@ pub(crate) fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> 
         let from = match one.from {
             From::Start => "start".to_owned(),
             From::Switch { branch, event } => format!("{branch}, event {event}"),
+            From::Deflation { branch, .. } => format!("beside {branch}"),
         };
         let (low, high) = range(&one.curve.x);
         let mut ends = one.trace.stopped_because.to_string();

@@ -126,6 +126,7 @@ pub(crate) fn run_diagram(
             trace: Settings { target, domain: within, ..trace },
             depth: case.diagram.depth,
             max_branches: case.diagram.max_branches,
+            ..DiagramSettings::default()
         };
         Exploration { settings, saved, keep, observer, clock }
     };
@@ -146,12 +147,18 @@ pub(crate) fn run_diagram(
                 error => RunError::Diagram { case: case.name.clone(), error },
             })?;
             let mut zero = None;
-            Ok(result(case, diagram, seconds, ("plate distance z₀/R₀", "force F/√(χ k_b)"), &mut |branch| {
-                let traced = ContactBranch::new(branch, zero);
-                zero = traced.zero_force;
-                let curve = curve(&traced.branch, "force");
-                (contact::result(case, &traced, 0.0), curve)
-            }))
+            Ok(result(
+                case,
+                diagram,
+                seconds,
+                ("plate distance z₀/R₀", "force F/√(χ k_b)"),
+                &mut |branch| {
+                    let traced = ContactBranch::new(branch, zero);
+                    zero = traced.zero_force;
+                    let curve = curve(&traced.branch, "force");
+                    (contact::result(case, &traced, 0.0), curve)
+                },
+            ))
         }
         ProblemCase::RingLoad(_) => Err(RunError::NotAvailable {
             case: case.name.clone(),
@@ -212,6 +219,7 @@ fn result(
         let (trace, curve) = present(one.branch);
         let from = match one.origin {
             Origin::Switch { branch, event, .. } => From::Switch { branch, event },
+            Origin::Deflation { branch, parameter, .. } => From::Deflation { branch, parameter },
             _ => From::Start,
         };
         BranchRecord { id: one.id, from, depth: one.depth, began_because: began, trace, curve }

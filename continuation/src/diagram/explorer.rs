@@ -7,7 +7,9 @@ use super::{
     Diagram, DiagramBranch, DiagramError, DiagramProgress, DiagramStop, Origin, Unfinished,
 };
 use crate::branch::{Branch, EventKind, Statistics, Stop, StopReason};
+use crate::deflation::{OffBranch, disconnected};
 use crate::events::Watch;
+use crate::near::{NearBifurcation, near_bifurcations};
 use crate::problem::Problem;
 use crate::settings::Settings;
 use crate::tracer::{Progress, TraceError, Tracer, both_ways};
@@ -15,11 +17,26 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
 /// What is to be followed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 enum Task {
     Start,
-    Ray { node: usize, ray: usize, depth: usize },
+    Ray {
+        node: usize,
+        ray: usize,
+        depth: usize,
+    },
+    /// A solution on no known branch.
+    Off {
+        u: Vec<f64>,
+        p: Vec<f64>,
+        parameter: f64,
+        branch: usize,
+        near: usize,
+    },
 }
+
+/// So many branches are sought beside one near-bifurcation.
+const MANY: usize = 8;
 
 /// Told of every point; may stop the exploration.
 pub(super) type Observer<'o> = dyn FnMut(&DiagramProgress<'_>) -> ControlFlow<()> + 'o;
@@ -36,6 +53,8 @@ pub struct Explorer<'a, P: Problem> {
     // known as soon as the first branch is
     domain: Option<(f64, f64)>,
     queue: VecDeque<Task>,
+    // the next near-bifurcation beside which to search: a branch and a number
+    searched: (usize, usize),
     unfinished: Option<Unfinished>,
     stopped: Option<DiagramStop>,
 }
@@ -72,6 +91,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
             joints: Joints::new(1.0),
             domain: None,
             queue: VecDeque::from([Task::Start]),
+            searched: (0, 0),
             unfinished: None,
             stopped: None,
         })
@@ -96,13 +116,22 @@ impl<'a, P: Problem> Explorer<'a, P> {
             if one.branch.points.iter().any(|point| point.u.len() != self.problem.dim()) {
                 return Err(foreign("it has another number of unknowns"));
             }
-            let Some(task) = self.pop() else {
-                return Err(foreign("there is nothing left to be followed"));
+            let task = match (self.pop(), one.origin) {
+                // what was found need not be sought again
+                (None, Origin::Deflation { branch, near, parameter }) => {
+                    if self.branches.get(branch).is_none_or(|b| near >= b.near.len()) {
+                        return Err(foreign("it was found beside a branch that is not there"));
+                    }
+                    self.searched = (branch, near);
+                    Task::Off { u: Vec::new(), p: Vec::new(), parameter, branch, near }
+                }
+                (None, _) => return Err(foreign("there is nothing left to be followed")),
+                (Some(task), _) => task,
             };
             if self.origin(&task) != one.origin {
                 return Err(foreign("another branch comes next"));
             }
-            self.add(task, one.branch);
+            self.add(task, one.branch, one.near);
         }
         self.unfinished = unfinished;
         Ok(self)
@@ -125,25 +154,38 @@ impl<'a, P: Problem> Explorer<'a, P> {
         if self.stopped.is_some() {
             return Ok(None);
         }
-        let Some(task) = self.pop() else {
-            self.stopped = Some(DiagramStop::Complete);
-            return Ok(None);
+        let (task, branch) = loop {
+            let next = match self.pop() {
+                None => self.search(),
+                some => some,
+            };
+            let Some(task) = next else {
+                self.stopped = Some(DiagramStop::Complete);
+                return Ok(None);
+            };
+            if self.branches.len() >= self.settings.max_branches {
+                self.stopped = Some(DiagramStop::MaxBranches);
+                return Ok(None);
+            }
+            let (branches, waiting) = (self.branches.len(), self.waiting());
+            let origin = self.origin(&task);
+            let unfinished = self.unfinished.take().filter(|one| one.origin == origin);
+            let traced = self.trace(&task, unfinished, &mut |at, part| {
+                observer(&DiagramProgress { branches, waiting, at: *at, origin, part })
+            });
+            match (traced, &task) {
+                (Ok(branch), _) => break (task, branch),
+                // a solution without a tangent: another place will show the branch, if there is one
+                (Err(_), Task::Off { branch, near, .. }) => self.searched = (*branch, near + 1),
+                (Err(error), _) => return Err(error),
+            }
         };
-        if self.branches.len() >= self.settings.max_branches {
-            self.stopped = Some(DiagramStop::MaxBranches);
-            return Ok(None);
-        }
-        let (branches, waiting) = (self.branches.len(), self.waiting());
-        let origin = self.origin(&task);
-        let unfinished = self.unfinished.take().filter(|one| one.origin == origin);
-        let branch = self.trace(&task, unfinished, &mut |at, part| {
-            observer(&DiagramProgress { branches, waiting, at: *at, origin, part })
-        })?;
         let interrupted = |stop: &Stop| stop.reason == StopReason::Interrupted;
         if interrupted(&branch.stopped) || branch.began.as_ref().is_some_and(interrupted) {
             self.stopped = Some(DiagramStop::Interrupted);
         }
-        self.add(task, branch);
+        let near = if self.stopped.is_none() { self.near(&branch) } else { Vec::new() };
+        self.add(task, branch, near);
         Ok(self.branches.last())
     }
 
@@ -172,7 +214,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
 
     fn is_open(&self, task: &Task) -> bool {
         match *task {
-            Task::Start => true,
+            Task::Start | Task::Off { .. } => true,
             Task::Ray { node, ray, .. } => !self.joints.nodes[node].rays[ray].taken,
         }
     }
@@ -195,6 +237,42 @@ impl<'a, P: Problem> Explorer<'a, P> {
                 let (direction, forward) = node.rays[ray].leaving.unwrap_or((0, true));
                 Origin::Switch { branch, event, direction, forward }
             }
+            Task::Off { parameter, branch, near, .. } => {
+                Origin::Deflation { branch, near, parameter }
+            }
+        }
+    }
+
+    /// The near-bifurcations of a branch.
+    fn near(&self, branch: &Branch) -> Vec<NearBifurcation> {
+        let Some(search) = &self.settings.search else { return Vec::new() };
+        // a branch that was traced is one of this problem, with a value at every point
+        near_bifurcations(self.problem, branch, search.near).unwrap_or_default()
+    }
+
+    /// A solution beside the next near-bifurcation that is on no known branch. Beside each the
+    /// search goes on until there is no further one.
+    fn search(&mut self) -> Option<Task> {
+        let search = self.settings.search.clone()?;
+        let known: Vec<Branch> = self.branches.iter().map(|one| one.branch.clone()).collect();
+        loop {
+            let (branch, near) = self.searched;
+            let one = self.branches.get(branch)?;
+            if near >= one.near.len() || one.depth >= self.settings.depth {
+                self.searched = (branch + 1, 0);
+                continue;
+            }
+            let beside = std::slice::from_ref(&one.near[near]);
+            let found = disconnected(self.problem, &known, beside, &[], &search.deflation);
+            let which = self.problem.parameters().iter().position(|q| q.name == self.parameter)?;
+            let inside = |p: f64| self.domain.is_none_or(|(lo, hi)| (lo..=hi).contains(&p));
+            let first = found.unwrap_or_default().into_iter().find(|off| inside(off.p[which]));
+            match first {
+                Some(OffBranch { u, p, .. }) => {
+                    return Some(Task::Off { parameter: p[which], u, p, branch, near });
+                }
+                None => self.searched = (branch, near + 1),
+            }
         }
     }
 
@@ -207,6 +285,11 @@ impl<'a, P: Problem> Explorer<'a, P> {
         let part = unfinished.map(|one| one.part);
         let (problem, watches) = (self.problem, &self.watches[..]);
         let settings = self.settings.trace.clone();
+        if let Task::Off { u, p, .. } = task {
+            let (name, settings) = (&self.parameter, self.within(settings));
+            let mut hear = |at: &Progress| observer(at, None);
+            return Ok(both_ways(problem, name, u, p, settings, watches, &mut hear)?);
+        }
         let Origin::Switch { branch, event, direction, forward } = self.origin(task) else {
             let (u, p) = &self.start;
             if settings.target.is_none() && settings.domain.is_some() {
@@ -253,7 +336,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
     }
 
     /// Takes account of a traced branch.
-    fn add(&mut self, task: Task, branch: Branch) {
+    fn add(&mut self, task: Task, branch: Branch, near: Vec<NearBifurcation>) {
         let id = self.branches.len();
         let origin = self.origin(&task);
         let depth = match task {
@@ -269,6 +352,17 @@ impl<'a, P: Problem> Explorer<'a, P> {
                 self.joints.begin(self.problem, id, (node, ray), closed);
                 depth
             }
+            Task::Off { branch: beside, near, .. } => {
+                let same = |origin: &Origin| {
+                    matches!(origin, Origin::Deflation { branch: b, near: n, .. }
+                        if (*b, *n) == (beside, near))
+                };
+                let others = self.branches.iter().filter(|one| same(&one.origin)).count();
+                if branch.points.len() < 3 || others >= MANY {
+                    self.searched = (beside, near + 1);
+                }
+                self.branches[beside].depth + 1
+            }
         };
         for (k, event) in branch.events.iter().enumerate() {
             let Some(crossing) = event.crossing() else { continue };
@@ -282,7 +376,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
                 self.enqueue(node, depth + 1);
             }
         }
-        self.branches.push(DiagramBranch { id, origin, depth, branch });
+        self.branches.push(DiagramBranch { id, origin, depth, branch, near });
     }
 
     fn enqueue(&mut self, node: usize, depth: usize) {

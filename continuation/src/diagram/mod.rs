@@ -31,11 +31,18 @@
 //! # Ok::<(), continuation::diagram::DiagramError>(())
 //! ```
 //!
+//! Where an imperfection keeps branches apart there is no joint to lead from one to the other. When no
+//! ray is left, every branch is searched for near-bifurcations ([`crate::near_bifurcations`]), beside
+//! which deflation looks for solutions that are on no known branch
+//! ([`disconnected`](crate::deflation::disconnected)); the branch of each is followed both ways and
+//! explored like the others.
+//!
 //! # What is found
 //! Everything that is connected with the first branch through located branch points, within the domain
 //! and to the depth asked for, as far as the tangents at the branch points are known: at points whose
 //! form is [`Degenerate`](crate::Shape::Degenerate) they may not be, and of a continuous family one
-//! branch is followed. Branches that a symmetry of the problem maps onto each other are different
+//! branch is followed. Of disconnected branches those that come near a known one; that nothing more was
+//! found proves nothing. Branches that a symmetry of the problem maps onto each other are different
 //! branches.
 //!
 //! # Going on later
@@ -53,9 +60,10 @@ mod joints;
 mod settings;
 
 pub use explorer::Explorer;
-pub use settings::DiagramSettings;
+pub use settings::{DiagramSettings, Search};
 
 use crate::branch::{Branch, Point, Statistics};
+use crate::near::NearBifurcation;
 use crate::settings::SettingsError;
 use crate::tracer::{Progress, TraceError};
 use follow::Part;
@@ -79,6 +87,15 @@ pub enum Origin {
         /// Along that direction, or against it.
         forward: bool,
     },
+    /// Disconnected from all others: at a solution found by deflation beside a near-bifurcation.
+    Deflation {
+        /// The branch with the near-bifurcation.
+        branch: usize,
+        /// Which of [`DiagramBranch::near`].
+        near: usize,
+        /// The parameter's value at the solution.
+        parameter: f64,
+    },
 }
 
 /// A branch of a diagram.
@@ -88,10 +105,13 @@ pub struct DiagramBranch {
     pub id: usize,
     /// Where it begins.
     pub origin: Origin,
-    /// How many branch points lie between it and the first branch, by the way it was found.
+    /// How many branch points or searches lie between it and the first branch, by the way it was
+    /// found.
     pub depth: usize,
     /// The branch.
     pub branch: Branch,
+    /// Its near-bifurcations, if disconnected branches are sought.
+    pub near: Vec<NearBifurcation>,
 }
 
 /// A branch point, and all places where it was met.

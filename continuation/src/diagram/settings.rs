@@ -1,5 +1,7 @@
 //! Settings of a diagram.
 
+use crate::deflation::DeflationSettings;
+use crate::near::NearSettings;
 use crate::settings::{Settings, SettingsError};
 use serde::{Deserialize, Serialize};
 
@@ -23,11 +25,28 @@ pub struct DiagramSettings {
     pub depth: usize,
     /// Most branches.
     pub max_branches: usize,
+    /// How disconnected branches are sought beside near-bifurcations; `None`: not at all.
+    pub search: Option<Search>,
+}
+
+/// How disconnected branches are sought.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Search {
+    /// What counts as a near-bifurcation.
+    pub near: NearSettings,
+    /// How further solutions are sought beside it.
+    pub deflation: DeflationSettings,
 }
 
 impl Default for DiagramSettings {
     fn default() -> Self {
-        DiagramSettings { trace: Settings::default(), depth: 2, max_branches: 1000 }
+        DiagramSettings {
+            trace: Settings::default(),
+            depth: 2,
+            max_branches: 1000,
+            search: Some(Search::default()),
+        }
     }
 }
 
@@ -39,6 +58,10 @@ impl DiagramSettings {
     pub fn validate(&self) -> Result<(), SettingsError> {
         if self.max_branches == 0 {
             return Err(SettingsError { key: "max_branches", value: 0.0, allowed: "at least 1" });
+        }
+        if let Some(search) = &self.search {
+            search.near.validate()?;
+            search.deflation.validate()?;
         }
         self.trace.validate()
     }
