@@ -175,11 +175,13 @@ pub(crate) struct DiagramCase {
     /// Bounds of the parameter, in which the first branch is followed both ways; without them it
     /// goes from the path's start to its end, and the others stay where it has been.
     pub(crate) within: Option<(f64, f64)>,
+    /// Whether disconnected branches are sought beside near-bifurcations.
+    pub(crate) search: bool,
 }
 
 impl Default for DiagramCase {
     fn default() -> Self {
-        DiagramCase { depth: 2, max_branches: 1000, within: None }
+        DiagramCase { depth: 2, max_branches: 1000, within: None, search: true }
     }
 }
 

@@ -29,7 +29,8 @@ const PHYSICAL: &[&str] = &[
 ];
 const MESH: &[&str] = &["elements", "grading"];
 const PATH: &[&str] = &["start", "end", "max_step", "min_step", "max_points", "eigenvalues"];
-const DIAGRAM: &[&str] = &["depth", "max_branches", "from", "to"];
+const DIAGRAM: &[&str] = &["depth", "max_branches", "from", "to", "search"];
+const SEARCH: [&str; 2] = ["near-bifurcations", "none"];
 
 /// Where a key may be at home, for those that stand in the wrong table.
 const HOMES: &[(&str, &[&str])] = &[
@@ -474,7 +475,21 @@ impl<'a> Resolver<'a> {
             self.reader.refuse(section, "from", node, Complaint::OutOfRange { allowed });
             return None;
         }
-        Some(DiagramCase { depth: depth?, max_branches: max_branches?, within })
+        let search = match section.get("search") {
+            None => default.search,
+            Some(node) => {
+                let word = self.reader.text(section, "search")?;
+                if !SEARCH.contains(&word) {
+                    let suggestion = closest(word, SEARCH).map(ToString::to_string);
+                    let allowed = SEARCH.iter().map(ToString::to_string).collect();
+                    let why = Complaint::UnknownWord { allowed, suggestion };
+                    self.reader.refuse(section, "search", node, why);
+                    return None;
+                }
+                word == SEARCH[0]
+            }
+        };
+        Some(DiagramCase { depth: depth?, max_branches: max_branches?, within, search })
     }
 
     /// A number in a range of the catalogue, with a default.

@@ -130,6 +130,7 @@ fn diagram(out: &mut Lines, diagram: &DiagramCase) {
     out.table("diagram");
     out.count("depth", diagram.depth);
     out.count("max_branches", diagram.max_branches);
+    out.text("search", if diagram.search { "near-bifurcations" } else { "none" });
     if let Some((low, high)) = diagram.within {
         out.number("from", low);
         out.number("to", high);

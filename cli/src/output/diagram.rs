@@ -53,6 +53,17 @@ impl Serialize for From {
     }
 }
 
+/// A bifurcation that a small change would make.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NearRecord {
+    /// `branch-point`, or `folds` that nearly meet.
+    pub(crate) kind: &'static str,
+    /// Where.
+    pub(crate) parameter: f64,
+    /// How near, relative.
+    pub(crate) gap: f64,
+}
+
 /// A branch of a diagram.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BranchRecord {
@@ -64,6 +75,8 @@ pub(crate) struct BranchRecord {
     pub(crate) depth: usize,
     /// Why it ends at its first point, if that is an end.
     pub(crate) began_because: Option<StopReason>,
+    /// Its near-bifurcations.
+    pub(crate) near: Vec<NearRecord>,
     /// The branch itself.
     pub(crate) trace: TraceResult,
     /// What is drawn of it.
@@ -143,7 +156,7 @@ struct BranchOf<'a>(&'a BranchRecord);
 
 impl Serialize for BranchOf<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let BranchRecord { id, from, depth, began_because, trace, .. } = self.0;
+        let BranchRecord { id, from, depth, began_because, near, trace, .. } = self.0;
         let parameter = &trace.parameter;
         let events: Vec<EventOf<'_>> =
             trace.events.iter().map(|event| EventOf { event, parameter }).collect();
@@ -153,6 +166,11 @@ impl Serialize for BranchOf<'_> {
         map.serialize_entry("depth", depth)?;
         map.serialize_entry("csv", &self.0.csv())?;
         map.serialize_entry("events", &events)?;
+        if !near.is_empty() {
+            let near: Vec<NearOf<'_>> =
+                near.iter().map(|near| NearOf { near, parameter }).collect();
+            map.serialize_entry("near_bifurcations", &near)?;
+        }
         if let Some(reason) = began_because {
             map.serialize_entry("began_because", &reason.to_string())?;
         }
@@ -161,6 +179,21 @@ impl Serialize for BranchOf<'_> {
         map.serialize_entry("points", &trace.points)?;
         map.serialize_entry("certified", &trace.certified)?;
         map.serialize_entry("newton_iterations", &trace.newton_iterations)?;
+        map.end()
+    }
+}
+
+struct NearOf<'a> {
+    near: &'a NearRecord,
+    parameter: &'a str,
+}
+
+impl Serialize for NearOf<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(3))?;
+        map.serialize_entry("kind", self.near.kind)?;
+        map.serialize_entry(self.parameter, &self.near.parameter)?;
+        map.serialize_entry("gap", &self.near.gap)?;
         map.end()
     }
 }

@@ -13,7 +13,8 @@ mod table;
 pub(crate) mod tests;
 
 pub(crate) use checkpoint::Checkpoint;
-pub(crate) use diagram::{BranchRecord, DiagramResult, From, diagram_json, diagram_summary};
+pub(crate) use diagram::{BranchRecord, DiagramResult, From, NearRecord};
+pub(crate) use diagram::{diagram_json, diagram_summary};
 pub(crate) use events::events_json;
 pub(crate) use folder::Folder;
 pub(crate) use result::{Cell, ContactRow, EventRecord, FormRecord, Table};

@@ -2,13 +2,13 @@
 
 use super::{RunError, contact, general};
 use crate::case::{ProblemCase, ResolvedCase};
-use crate::output::{BranchRecord, DiagramResult, From, TraceResult};
+use crate::output::{BranchRecord, DiagramResult, From, NearRecord, TraceResult};
 use crate::pictures::{Curve, Mark};
 use continuation::diagram::{
-    Diagram, DiagramBranch, DiagramError, DiagramSettings, DiagramStop, Explorer, Origin,
+    Diagram, DiagramBranch, DiagramError, DiagramSettings, DiagramStop, Explorer, Origin, Search,
     Unfinished,
 };
-use continuation::{Branch, Problem, Settings, StopReason};
+use continuation::{Branch, NearKind, Problem, Settings, StopReason};
 use problems::{Setup, Visitor};
 use shell_contact::{ContactBranch, force_watches};
 use std::ops::ControlFlow;
@@ -126,7 +126,7 @@ pub(crate) fn run_diagram(
             trace: Settings { target, domain: within, ..trace },
             depth: case.diagram.depth,
             max_branches: case.diagram.max_branches,
-            ..DiagramSettings::default()
+            search: case.diagram.search.then(Search::default),
         };
         Exploration { settings, saved, keep, observer, clock }
     };
@@ -216,13 +216,29 @@ fn result(
         diagram.branches.first().map(|one| one.branch.parameter.clone()).unwrap_or_default();
     let branches = diagram.branches.into_iter().map(|one| {
         let began = one.branch.began.as_ref().map(|stop| stop.reason);
+        let near = one.near.iter().map(|near| {
+            let kind = match near.kind {
+                NearKind::BranchPoint => "branch-point",
+                _ => "folds",
+            };
+            NearRecord { kind, parameter: near.p, gap: near.gap }
+        });
+        let near = near.collect();
         let (trace, curve) = present(one.branch);
         let from = match one.origin {
             Origin::Switch { branch, event, .. } => From::Switch { branch, event },
             Origin::Deflation { branch, parameter, .. } => From::Deflation { branch, parameter },
             _ => From::Start,
         };
-        BranchRecord { id: one.id, from, depth: one.depth, began_because: began, trace, curve }
+        BranchRecord {
+            id: one.id,
+            from,
+            depth: one.depth,
+            began_because: began,
+            near,
+            trace,
+            curve,
+        }
     });
     DiagramResult {
         case: case.name.clone(),
@@ -251,9 +267,9 @@ fn ending(diagram: &Diagram) -> (&'static str, String) {
             let count = unfinished.clone().count();
             let detail = match (count, open) {
                 (0, 0) => "every branch was followed to its end".to_owned(),
-                (0, _) => format!(
-                    "{open} halves of branches leave the deepest ones; a larger diagram.depth follows them"
-                ),
+                (0, 1) => "one half branch leaves the deepest ones: see diagram.depth".to_owned(),
+                (0, _) => format!("{open} half branches leave the deepest ones: see diagram.depth"),
+                (1, _) => "one branch ended early; see its own".to_owned(),
                 _ => format!("{count} branches ended early; see theirs"),
             };
             (if count == 0 { "complete" } else { "incomplete" }, detail)
