@@ -100,11 +100,10 @@ fn the_other_branch_of_a_broken_symmetry() {
 fn a_sheet_that_begins_beyond_the_bound() {
     let branches = explore(&Cusp, &[-1.3], &[-1.0, 1.0], &within(-1.2, 0.3), &[0.0]);
     assert_eq!(branches.len(), 2);
+    let search = DeflationSettings::default();
     let at = |x: f64| {
-        branches
-            .iter()
-            .map(|b| lies_on(&Cusp, b, &[x], &[0.0, 1.0], &DeflationSettings::default()).unwrap())
-            .collect::<Vec<_>>()
+        let lies = |b: &Branch| lies_on(&Cusp, b, &[x], &[0.0, 1.0], &search).unwrap();
+        branches.iter().map(lies).collect::<Vec<_>>()
     };
     assert_eq!(at(-1.0), [true, false]);
     assert_eq!(at(0.0), [false, true]);
@@ -112,7 +111,7 @@ fn a_sheet_that_begins_beyond_the_bound() {
     assert_eq!(at(0.5), [false, false]);
 }
 
-/// Three at μ = 0 and two at λ = 3, from a branch that stops before its fold.
+/// Bratu's upper states from a branch that stops before the fold: two solutions at λ = 3.
 #[test]
 fn numbers_of_solutions_from_a_part_of_a_branch() {
     let problem = Bratu::new(99);
@@ -157,7 +156,8 @@ fn what_is_wrong_is_an_error() {
     let branch = Tracer::new(&Cusp, "mu", &[-1.5], &[-2.0, 1.0], settings)
         .unwrap()
         .run(&mut |_| ControlFlow::Continue(()));
-    let error = disconnected(&Cusp, &[branch.clone()], &[], &[f64::NAN], &search).unwrap_err();
+    let error =
+        disconnected(&Cusp, std::slice::from_ref(&branch), &[], &[f64::NAN], &search).unwrap_err();
     assert!(matches!(error, DeflationError::NotFinite { .. }));
     let error = disconnected(&Bratu::new(2), &[branch], &[], &[0.0], &search).unwrap_err();
     assert!(matches!(error, DeflationError::Foreign { .. }));

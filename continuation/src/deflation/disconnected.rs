@@ -32,7 +32,7 @@ pub struct OffBranch {
 ///
 /// Beside a near-bifurcation attempts start from the known branches mirrored in it and from steps
 /// along its direction, either way, at parameters on both sides; outside of the branches' range of the
-/// parameter only where nothing is found inside. At a chosen value they start beside
+/// parameter only where nothing is found inside and a fold is what bounds it. At a chosen value they start beside
 /// the known solutions there ([`Deflation`]) and from states of the branches at other values. A
 /// solution is on a branch if Newton's method leads to it from where the branch passes the value.
 ///
@@ -146,7 +146,7 @@ pub fn lies_on<P: Problem>(
 }
 
 /// Values of the parameter on one side of a near-bifurcation, inside or outside of the range of the
-/// branches.
+/// branches. Beyond the end of a branch, where it goes on without being known, there are none.
 fn offsets<P: Problem>(
     branches: &[Branch],
     which: usize,
@@ -157,11 +157,21 @@ fn offsets<P: Problem>(
 ) -> Vec<f64> {
     let name = problem.parameters()[which].name;
     let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-    for point in branches.iter().filter(|b| b.parameter == name).flat_map(|b| &b.points) {
-        (lo, hi) = (lo.min(point.p), hi.max(point.p));
+    let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
+    for branch in branches.iter().filter(|b| b.parameter == name) {
+        for p in branch.points.iter().map(|point| point.p) {
+            (lo, hi) = (lo.min(p), hi.max(p));
+        }
+        for end in [branch.points.first(), branch.points.last()].into_iter().flatten() {
+            (first, last) = (first.min(end.p), last.max(end.p));
+        }
     }
     let value = |x: f64| near.p + side * (x * near.gap).clamp(SPAN.0, SPAN.1) * (hi - lo);
-    OFFSETS.into_iter().map(value).filter(|p| (lo..=hi).contains(p) == inside).collect()
+    let allowed = |p: &f64| match inside {
+        true => (lo..=hi).contains(p),
+        false => (*p < lo && lo < first) || (*p > hi && hi > last),
+    };
+    OFFSETS.into_iter().map(value).filter(allowed).collect()
 }
 
 /// Solutions on no branch at the parameters `p`, near a near-bifurcation.

@@ -1,4 +1,21 @@
 //! Near-bifurcations of a traced branch: imperfect branch points, and folds in pairs.
+//!
+//! Where an imperfection unfolds a branch point, the smallest singular value `σ(s)` of `[F_u F_p]`, zero
+//! there otherwise, has a minimum along the branch. From the minimum Newton's method for
+//! ```text
+//! F(z) + B β = 0,    G(z) = 0
+//! ```
+//! (the bordered matrix of [`crate::guide::methods`]) meets the branch point of the perturbed
+//! equations; `|β|` measures the imperfection, `√(|β| / |ψᵀF_zz|)` in natural amplitudes the gap.
+//!
+//! # Limits
+//! Branch points with one critical mode, and folds. A dip between two points is not seen; where a branch
+//! turns into another direction the tracer's steps are short enough.
+//!
+//! # References
+//! - W. Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria*, SIAM, 2000, ch. 5.
+//! - M. Golubitsky and D. G. Schaeffer, *Singularities and Groups in Bifurcation Theory* I, Springer,
+//!   1985, ch. III (unfoldings).
 
 mod settings;
 
@@ -84,7 +101,7 @@ pub enum NearError {
 /// the branch point of `F + βb = 0` decides: `β` says how far the branches are kept apart. Two folds in
 /// a row whose parameters differ little are reported too.
 ///
-/// One assembly and two factorisations per point, after the trace, and up to fourteen iterations for
+/// One assembly and one factorisation per point, after the trace, and up to fourteen iterations for
 /// every dip. The branch must hold its points as they were traced: a dip between far points is not
 /// seen.
 ///

@@ -113,7 +113,7 @@ impl Frame {
     }
 
     /// Row `j` of `W`.
-    fn left<P: Problem>(&mut self, probe: &mut Probe<'_, P>, j: usize) -> Vec<f64> {
+    pub(super) fn left<P: Problem>(&mut self, probe: &mut Probe<'_, P>, j: usize) -> Vec<f64> {
         self.rhs.fill(0.0);
         self.tail.fill(0.0);
         self.tail[j + 1] = 1.0;
