@@ -15,7 +15,7 @@ mod roots;
 mod small;
 
 pub(crate) use fold::fold_form;
-pub(crate) use hopf::locate_hopf;
+pub(crate) use hopf::{locate_hopf, lyapunov_coefficient};
 pub(crate) use kernel::arbitrary;
 pub(crate) use probe::{Extended, Probe};
 
