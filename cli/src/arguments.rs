@@ -26,6 +26,9 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Follow a branch; write its points, special points and pictures
     Trace(TraceArguments),
+    /// Follow special points in two parameters; write the curves, the special points on them and a
+    /// picture
+    Map(MapArguments),
     /// Print a case with every default written out, or say what is wrong with it
     Check(CaseArguments),
     /// List the cases and problems that have names
@@ -78,6 +81,30 @@ pub(crate) struct TraceArguments {
     #[arg(long)]
     pub(crate) json: bool,
     /// Draw no pictures
+    #[arg(long)]
+    pub(crate) no_pictures: bool,
+    /// No progress, no summary, no notes
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+/// Which case, over which second parameter, and what to do with the curves.
+#[derive(Debug, Args)]
+pub(crate) struct MapArguments {
+    /// Which case.
+    #[command(flatten)]
+    pub(crate) case: CaseArguments,
+    /// The second parameter: a key of [dimensionless] or [parameters], between map.from and map.to
+    /// [default: a tenth to ten times the case's value]
+    #[arg(long, value_name = "KEY")]
+    pub(crate) over: String,
+    /// Folder for the results, made if missing [default: ./arclen-out/CASE]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print map.json on standard output; without --out, write no files
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Draw no picture
     #[arg(long)]
     pub(crate) no_pictures: bool,
     /// No progress, no summary, no notes

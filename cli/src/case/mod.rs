@@ -32,6 +32,8 @@ pub(crate) struct ResolvedCase {
     pub(crate) problem: ProblemCase,
     /// Which part of the branch is traced.
     pub(crate) path: PathCase,
+    /// Bounds of the second parameter of a map.
+    pub(crate) map: MapCase,
 }
 
 /// What is solved.
@@ -161,6 +163,15 @@ pub(crate) struct PathCase {
     pub(crate) max_points: usize,
     /// Number of eigenvalues to compute at every point.
     pub(crate) eigenvalues: usize,
+}
+
+/// Bounds of the second parameter of a map; the command has defaults.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct MapCase {
+    /// The lower one.
+    pub(crate) from: Option<f64>,
+    /// The upper one.
+    pub(crate) to: Option<f64>,
 }
 
 /// What the command line needs to know about a problem of the catalogue.

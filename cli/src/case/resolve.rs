@@ -5,8 +5,8 @@ use super::error::{CaseError, Complaint};
 use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
 use super::reader::{ANY, Allowed, NOT_NEGATIVE, POSITIVE, Reader, Section};
 use super::{
-    CatalogueCase, CatalogueEntry, ContactCase, ElementRange, Groups, Law, LoadedCase, MeshCase,
-    PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
+    CatalogueCase, CatalogueEntry, ContactCase, ElementRange, Groups, Law, LoadedCase, MapCase,
+    MeshCase, PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
 };
 use crate::closest::closest;
 use crate::units::{self, Dimension};
@@ -29,6 +29,7 @@ const PHYSICAL: &[&str] = &[
 ];
 const MESH: &[&str] = &["elements", "grading"];
 const PATH: &[&str] = &["start", "end", "max_step", "min_step", "max_points", "eigenvalues"];
+const MAP: &[&str] = &["from", "to"];
 
 /// Where a key may be at home, for those that stand in the wrong table.
 const HOMES: &[(&str, &[&str])] = &[
@@ -37,6 +38,7 @@ const HOMES: &[(&str, &[&str])] = &[
     ("physical", PHYSICAL),
     ("mesh", MESH),
     ("path", PATH),
+    ("map", MAP),
 ];
 
 const GAS_EXPONENT: f64 = 1.07;
@@ -114,7 +116,8 @@ impl<'a> Resolver<'a> {
                 }
             },
         };
-        let case = ResolvedCase { name: name?, problem: problem?, path: path? };
+        let map = self.map();
+        let case = ResolvedCase { name: name?, problem: problem?, path: path?, map: map? };
         Some(LoadedCase { case, notes: self.notes })
     }
 
@@ -138,7 +141,8 @@ impl<'a> Resolver<'a> {
     }
 
     fn contact(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
-        let tables = ["name", "problem", "shell", "dimensionless", "physical", "mesh", "path"];
+        let tables =
+            ["name", "problem", "shell", "dimensionless", "physical", "mesh", "path", "map"];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
         let dimensionless = self.table("dimensionless", DIMENSIONLESS);
@@ -173,7 +177,7 @@ impl<'a> Resolver<'a> {
     }
 
     fn ring_load(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
-        let tables = ["name", "problem", "shell", "dimensionless", "mesh", "path"];
+        let tables = ["name", "problem", "shell", "dimensionless", "mesh", "path", "map"];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
         let groups = self.table("dimensionless", RING_GROUPS);
@@ -191,7 +195,11 @@ impl<'a> Resolver<'a> {
     }
 
     fn entry(&mut self, entry: &CatalogueEntry) -> (Option<ProblemCase>, Option<PathCase>) {
-        self.reader.only(self.root, &["name", "problem", "parameters", "mesh", "path"], HOMES);
+        self.reader.only(
+            self.root,
+            &["name", "problem", "parameters", "mesh", "path", "map"],
+            HOMES,
+        );
         let section = self.reader.section(self.root, "parameters");
         let names: Vec<&str> = entry.parameters.iter().map(|one| one.name.as_str()).collect();
         self.reader.only(section, &names, &[("path", &[entry.parameter.as_str()])]);
@@ -436,6 +444,22 @@ impl<'a> Resolver<'a> {
             max_points: max_points?,
             eigenvalues: eigenvalues?,
         })
+    }
+
+    fn map(&self) -> Option<MapCase> {
+        let section = self.table("map", MAP);
+        let given = |key: &str| match section.get(key) {
+            None => Some(None),
+            Some(_) => self.reader.number(section, key, ANY).map(Some),
+        };
+        let (from, to) = (given("from")?, given("to")?);
+        if let (Some(low), Some(high), Some(node)) = (from, to, section.get("to"))
+            && low >= high
+        {
+            let allowed = format!("greater than map.from, which is {low:?}");
+            self.reader.refuse(section, "to", node, Complaint::OutOfRange { allowed });
+        }
+        Some(MapCase { from, to })
     }
 
     /// A number in a range of the catalogue, with a default.

@@ -1,6 +1,8 @@
 //! A resolved case as a case file again: everything written out, nothing left to defaults.
 
-use super::{ContactCase, Groups, MeshCase, PathCase, ProblemCase, ResolvedCase, ShellCase};
+use super::{
+    ContactCase, Groups, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, ShellCase,
+};
 use super::{Law, PhysicalCase, Stiffness};
 use std::fmt::Write as _;
 
@@ -35,6 +37,7 @@ impl ResolvedCase {
             }
         }
         path(&mut out, &self.path);
+        map(&mut out, self.map);
         out.0
     }
 }
@@ -120,6 +123,17 @@ fn path(out: &mut Lines, path: &PathCase) {
     out.count("max_points", path.max_points);
     if path.eigenvalues > 0 {
         out.count("eigenvalues", path.eigenvalues);
+    }
+}
+
+fn map(out: &mut Lines, map: MapCase) {
+    if map != MapCase::default() {
+        out.table("map");
+    }
+    for (key, value) in [("from", map.from), ("to", map.to)] {
+        if let Some(value) = value {
+            out.number(key, value);
+        }
     }
 }
 

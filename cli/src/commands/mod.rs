@@ -3,6 +3,7 @@
 mod check;
 mod completions;
 mod list;
+mod map;
 mod progress;
 mod trace;
 
@@ -16,6 +17,7 @@ pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
     match &arguments.command {
         Command::Trace(arguments) => trace::trace(arguments),
         Command::Check(arguments) => check::check(arguments),
+        Command::Map(arguments) => map::map(arguments),
         Command::List => list::list(),
         Command::Completions { shell } => completions::completions(*shell),
     }

@@ -2,6 +2,7 @@
 
 mod events;
 mod folder;
+mod map;
 mod number;
 mod result;
 mod summary;
@@ -12,6 +13,7 @@ pub(crate) mod tests;
 
 pub(crate) use events::events_json;
 pub(crate) use folder::Folder;
+pub(crate) use map::{MapCurve, MapPoint, MapResult, map_json, map_summary};
 pub(crate) use result::{Cell, ContactRow, EventRecord, FormRecord, Table};
 pub(crate) use result::{Pictures, TraceResult};
 pub(crate) use summary::summary;

@@ -74,7 +74,7 @@ fn event_rows(result: &TraceResult) -> Vec<Vec<String>> {
 }
 
 /// Columns of equal width: words to the left, numbers to the right.
-fn aligned(rows: &[Vec<String>]) -> String {
+pub(super) fn aligned(rows: &[Vec<String>]) -> String {
     let columns = rows.first().map_or(0, Vec::len);
     let width = |j: usize| rows.iter().map(|row| row[j].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(width).collect();

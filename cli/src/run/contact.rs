@@ -15,6 +15,10 @@ const SAMPLES: usize = 801;
 /// Longest step by default, in R0: short enough for curves that look smooth.
 const SMOOTH: f64 = 0.01;
 
+/// What to do when there is no first point.
+pub(super) const START_REMEDY: &str = "start farther from the shell (a film that attracts \
+    strongly pulls a soft shell onto the plate: try a larger path.start)";
+
 /// Trace a contact case.
 pub(super) fn run(
     case: &ResolvedCase,
@@ -31,8 +35,7 @@ pub(super) fn run(
             case: case.name.clone(),
             start: case.path.start,
             detail,
-            remedy: "start farther from the shell (a film that attracts strongly pulls a soft \
-                         shell onto the plate: try a larger path.start)",
+            remedy: START_REMEDY,
         },
     )?;
     let seconds = clock.elapsed().as_secs_f64();
@@ -53,7 +56,10 @@ pub(super) fn run(
     })
 }
 
-fn problem(contact: &ContactCase) -> Result<ContactProblem, shell_contact::ParameterError> {
+/// The problem of a case.
+pub(super) fn problem(
+    contact: &ContactCase,
+) -> Result<ContactProblem, shell_contact::ParameterError> {
     let law = match contact.shell.law {
         Law::Hooke => shell_contact::Law::Hooke,
         Law::MooneyRivlin { b } => shell_contact::Law::MooneyRivlin { b },
