@@ -21,6 +21,8 @@ const UNFOLDING: &str = "unfolding";
 const UNFOLDED: f64 = 1e-6;
 /// Cosine between borders and null vectors below which the borders are renewed.
 const ALIGNED: f64 = 0.9;
+/// Rounding of a bilinear form, relative to the largest entry and the lengths of both vectors.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// The simple branch points of a problem in two parameters, where they persist, by symmetry say:
 /// `f(u, p, q) + βb = 0`, `G₁ = G₂ = 0`, traced in `q`.
@@ -109,6 +111,18 @@ impl Kernel {
         }
         let all = self.right.iter().flatten().chain(&self.left).chain(&self.pi).chain(&self.g);
         all.copied().all(f64::is_finite)
+    }
+
+    /// Takes `G` for zero where it is no more than the rounding of `wᵀAv`: on a stiff problem
+    /// nothing else says when it is solved.
+    fn drop_rounding(&mut self, a: f64) {
+        let length = |x: &[f64]| dot(x, x).sqrt();
+        let left = length(&self.left);
+        for (g, v) in self.g.iter_mut().zip(&self.right) {
+            if g.abs() <= ROUNDING * a * left * length(v) {
+                *g = 0.0;
+            }
+        }
     }
 
     /// The pair `x`, turned as the equations are.
@@ -244,6 +258,7 @@ impl<'a, P: Problem> BranchPointCurve<'a, P> {
             if !work.kernel.solve(&mut work.jacobian) {
                 return Err(EvalError::NotFinite { at: n + 1 });
             }
+            work.kernel.drop_rounding(work.jacobian.norm());
             let b = work.kernel.bordered.column(0);
             work.r.iter_mut().zip(b).for_each(|(r, b)| *r += x[n] * b);
             work.at[..n + 2].copy_from_slice(x);

@@ -159,7 +159,31 @@ impl<'a, P: Problem> FoldCurve<'a, P> {
         let mut all: Vec<Watch> = watches.to_vec();
         all.extend(self.names[self.first_test..].iter().map(|name| Watch::zero(name)));
         let second = self.base.parameters[self.base.second_of_curve().0].name;
-        trace(self, (second, &self.start, &self.base.start()), settings, &all, observer)
+        let start = (second, &self.start[..], &self.base.start()[..]);
+        let mut curve = trace(self, start, settings, &all, observer)?;
+        self.confirm_cusps(&mut curve);
+        Ok(curve)
+    }
+
+    /// Drops zeros of the cusp's test at which neither parameter turns. Where another mode is
+    /// critical too the null vector is not unique, and the test says nothing.
+    fn confirm_cusps(&self, curve: &mut Curve) {
+        let n = self.base.problem.dim();
+        for index in (0..curve.branch.events.len()).rev() {
+            let Event { kind: EventKind::Cusp, point, .. } = curve.branch.events[index] else {
+                continue;
+            };
+            let points = &curve.branch.points;
+            let (Some(before), Some(after)) = (point.checked_sub(1), points.get(point + 1)) else {
+                continue;
+            };
+            let (before, at) = (&points[before], &points[point]);
+            let turns = |x: f64, y: f64, z: f64| (x - y) * (z - y) >= 0.0;
+            let second = turns(before.p, at.p, after.p);
+            if !second && !turns(before.u[n], at.u[n], after.u[n]) {
+                curve.forget(index);
+            }
+        }
     }
 
     /// Brings `work` to the given level at a state.
