@@ -28,6 +28,9 @@ pub(crate) enum Command {
     Trace(TraceArguments),
     /// Follow a branch and all that leave it; write them as one diagram
     Diagram(DiagramArguments),
+    /// Follow special points in two parameters; write the curves, the special points on them and a
+    /// picture
+    Map(MapArguments),
     /// Print a case with every default written out, or say what is wrong with it
     Check(CaseArguments),
     /// List the cases and problems that have names
@@ -122,4 +125,28 @@ impl DiagramArguments {
         let depth = self.depth.iter().map(|depth| Override::depth(depth));
         self.case.overrides().into_iter().chain(depth).collect()
     }
+}
+
+/// Which case, over which second parameter, and what to do with the curves.
+#[derive(Debug, Args)]
+pub(crate) struct MapArguments {
+    /// Which case.
+    #[command(flatten)]
+    pub(crate) case: CaseArguments,
+    /// The second parameter: a key of [dimensionless] or [parameters], between map.from and map.to
+    /// [default: a tenth to ten times the case's value]
+    #[arg(long, value_name = "KEY")]
+    pub(crate) over: String,
+    /// Folder for the results, made if missing [default: ./arclen-out/CASE]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print map.json on standard output; without --out, write no files
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Draw no picture
+    #[arg(long)]
+    pub(crate) no_pictures: bool,
+    /// No progress, no summary, no notes
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
 }

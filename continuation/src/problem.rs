@@ -207,8 +207,16 @@ pub trait SpecialPoints {
         0.0
     }
 
-    /// What it is when a pair of the other eigenvalues crosses the imaginary axis.
-    fn crossing_pair(&self) -> EventKind;
+    /// What it is when a pair of the other eigenvalues crosses the imaginary axis; `None`: nothing.
+    fn crossing_pair(&self) -> Option<EventKind> {
+        None
+    }
+
+    /// What it is when one of the other eigenvalues passes zero; `None`: nothing, or found by other
+    /// means.
+    fn crossing_zero(&self) -> Option<EventKind> {
+        None
+    }
 }
 
 /// The eigenvalues beside the critical ones.

@@ -34,6 +34,8 @@ pub(crate) struct ResolvedCase {
     pub(crate) path: PathCase,
     /// How far its diagram is explored.
     pub(crate) diagram: DiagramCase,
+    /// Bounds of the second parameter of a map.
+    pub(crate) map: MapCase,
 }
 
 /// What is solved.
@@ -183,6 +185,15 @@ impl Default for DiagramCase {
     fn default() -> Self {
         DiagramCase { depth: 2, max_branches: 1000, within: None, search: true }
     }
+}
+
+/// Bounds of the second parameter of a map; the command has defaults.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct MapCase {
+    /// The lower one.
+    pub(crate) from: Option<f64>,
+    /// The upper one.
+    pub(crate) to: Option<f64>,
 }
 
 /// What the command line needs to know about a problem of the catalogue.

@@ -6,7 +6,7 @@ use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
 use super::reader::{ANY, Allowed, NOT_NEGATIVE, POSITIVE, Reader, Section};
 use super::{
     CatalogueCase, CatalogueEntry, ContactCase, DiagramCase, ElementRange, Groups, Law, LoadedCase,
-    MeshCase, PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
+    MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
 };
 use crate::closest::closest;
 use crate::units::{self, Dimension};
@@ -31,6 +31,7 @@ const MESH: &[&str] = &["elements", "grading"];
 const PATH: &[&str] = &["start", "end", "max_step", "min_step", "max_points", "eigenvalues"];
 const DIAGRAM: &[&str] = &["depth", "max_branches", "from", "to", "search"];
 const SEARCH: [&str; 2] = ["near-bifurcations", "none"];
+const MAP: &[&str] = &["from", "to"];
 
 /// Where a key may be at home, for those that stand in the wrong table.
 const HOMES: &[(&str, &[&str])] = &[
@@ -40,6 +41,7 @@ const HOMES: &[(&str, &[&str])] = &[
     ("mesh", MESH),
     ("path", PATH),
     ("diagram", DIAGRAM),
+    ("map", MAP),
 ];
 
 const GAS_EXPONENT: f64 = 1.07;
@@ -118,7 +120,14 @@ impl<'a> Resolver<'a> {
             },
         };
         let diagram = path.as_ref().and_then(|path| self.diagram(path));
-        let case = ResolvedCase { name: name?, problem: problem?, path: path?, diagram: diagram? };
+        let map = self.map();
+        let case = ResolvedCase {
+            name: name?,
+            problem: problem?,
+            path: path?,
+            diagram: diagram?,
+            map: map?,
+        };
         Some(LoadedCase { case, notes: self.notes })
     }
 
@@ -142,8 +151,17 @@ impl<'a> Resolver<'a> {
     }
 
     fn contact(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
-        let tables =
-            ["name", "problem", "shell", "dimensionless", "physical", "mesh", "path", "diagram"];
+        let tables = [
+            "name",
+            "problem",
+            "shell",
+            "dimensionless",
+            "physical",
+            "mesh",
+            "path",
+            "diagram",
+            "map",
+        ];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
         let dimensionless = self.table("dimensionless", DIMENSIONLESS);
@@ -178,7 +196,8 @@ impl<'a> Resolver<'a> {
     }
 
     fn ring_load(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
-        let tables = ["name", "problem", "shell", "dimensionless", "mesh", "path", "diagram"];
+        let tables =
+            ["name", "problem", "shell", "dimensionless", "mesh", "path", "diagram", "map"];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
         let groups = self.table("dimensionless", RING_GROUPS);
@@ -198,7 +217,7 @@ impl<'a> Resolver<'a> {
     fn entry(&mut self, entry: &CatalogueEntry) -> (Option<ProblemCase>, Option<PathCase>) {
         self.reader.only(
             self.root,
-            &["name", "problem", "parameters", "mesh", "path", "diagram"],
+            &["name", "problem", "parameters", "mesh", "path", "diagram", "map"],
             HOMES,
         );
         let section = self.reader.section(self.root, "parameters");
@@ -490,6 +509,22 @@ impl<'a> Resolver<'a> {
             }
         };
         Some(DiagramCase { depth: depth?, max_branches: max_branches?, within, search })
+    }
+
+    fn map(&self) -> Option<MapCase> {
+        let section = self.table("map", MAP);
+        let given = |key: &str| match section.get(key) {
+            None => Some(None),
+            Some(_) => self.reader.number(section, key, ANY).map(Some),
+        };
+        let (from, to) = (given("from")?, given("to")?);
+        if let (Some(low), Some(high), Some(node)) = (from, to, section.get("to"))
+            && low >= high
+        {
+            let allowed = format!("greater than map.from, which is {low:?}");
+            self.reader.refuse(section, "to", node, Complaint::OutOfRange { allowed });
+        }
+        Some(MapCase { from, to })
     }
 
     /// A number in a range of the catalogue, with a default.

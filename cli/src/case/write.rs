@@ -1,7 +1,8 @@
 //! A resolved case as a case file again: everything written out, nothing left to defaults.
 
 use super::{
-    ContactCase, DiagramCase, Groups, MeshCase, PathCase, ProblemCase, ResolvedCase, ShellCase,
+    ContactCase, DiagramCase, Groups, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase,
+    ShellCase,
 };
 use super::{Law, PhysicalCase, Stiffness};
 use std::fmt::Write as _;
@@ -38,6 +39,7 @@ impl ResolvedCase {
         }
         path(&mut out, &self.path);
         diagram(&mut out, &self.diagram);
+        map(&mut out, self.map);
         out.0
     }
 }
@@ -134,6 +136,17 @@ fn diagram(out: &mut Lines, diagram: &DiagramCase) {
     if let Some((low, high)) = diagram.within {
         out.number("from", low);
         out.number("to", high);
+    }
+}
+
+fn map(out: &mut Lines, map: MapCase) {
+    if map != MapCase::default() {
+        out.table("map");
+    }
+    for (key, value) in [("from", map.from), ("to", map.to)] {
+        if let Some(value) = value {
+            out.number(key, value);
+        }
     }
 }
 

@@ -4,6 +4,7 @@ mod check;
 mod completions;
 mod diagram;
 mod list;
+mod map;
 mod progress;
 mod trace;
 
@@ -18,6 +19,7 @@ pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
         Command::Trace(arguments) => trace::trace(arguments),
         Command::Diagram(arguments) => diagram::diagram(arguments),
         Command::Check(arguments) => check::check(arguments),
+        Command::Map(arguments) => map::map(arguments),
         Command::List => list::list(),
         Command::Completions { shell } => completions::completions(*shell),
     }

@@ -264,7 +264,7 @@ fn draw_marker(root: &Area<'_>, form: Form, (x, y): (i32, i32)) -> Outcome {
         }
         Form::Ring => {
             root.draw(&Circle::new((x, y), 6 * PX, WHITE.filled()))?;
-            Ok(root.draw(&Circle::new((x, y), 5 * PX, INK.stroke_width(2)))?)
+            Ok(root.draw(&Circle::new((x, y), 5 * PX, INK.stroke_width(2 * PX as u32)))?)
         }
         Form::Square => polygon(&[(-6, -6), (6, -6), (6, 6), (-6, 6)], INK),
         Form::Up => polygon(&[(0, -8), (7, 5), (-7, 5)], INK),

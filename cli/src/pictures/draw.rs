@@ -7,6 +7,7 @@ use super::palette::{FAINT, of_quantity, of_state};
 use crate::case::document::shown;
 
 const FORCE: &str = "force F/√(χ k_b)";
+pub(super) const DISTANCE: &str = "plate distance z₀/R₀";
 const DEFORMATION: &str = "deformation Δ/R₀";
 const WIDE: (u32, u32) = (620, 440);
 
@@ -17,7 +18,7 @@ pub(super) fn force_deformation(title: &str, curve: &Curve) -> Result<String, Dr
 
 /// Force against plate distance.
 pub(super) fn force_distance(title: &str, curve: &Curve) -> Result<String, DrawError> {
-    chart(title, "plate distance z₀/R₀", FORCE, std::slice::from_ref(curve)).svg()
+    chart(title, DISTANCE, FORCE, std::slice::from_ref(curve)).svg()
 }
 
 /// Components of the energy against deformation.
@@ -133,6 +134,11 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
     legend.push(Entry::Line { color: FAINT, dashed: true, label });
     let size = (width as u32, height as u32);
     Chart { title: shown(title), x, y, lines, marks: Vec::new(), legend, size }.svg()
+}
+
+/// Curves of special points in two parameters.
+pub(super) fn map(title: &str, x: &str, y: &str, curves: &[Curve]) -> Result<String, DrawError> {
+    chart(title, x, y, curves).svg()
 }
 
 /// A chart of curves along a branch, with their special points.

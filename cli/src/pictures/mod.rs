@@ -7,6 +7,7 @@ mod axis;
 mod chart;
 mod data;
 mod draw;
+mod map;
 mod palette;
 
 #[cfg(test)]
@@ -15,6 +16,7 @@ pub(crate) mod tests;
 pub(crate) use chart::DrawError;
 pub(crate) use data::Mark;
 pub(crate) use data::{Curve, Profile, Shape};
+pub(crate) use map::{MAP, draw_map};
 
 use crate::output::{DiagramResult, Pictures};
 

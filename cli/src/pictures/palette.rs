@@ -26,6 +26,8 @@ pub(super) fn of_quantity(label: &str) -> RGBColor {
         "film" => GREEN,
         "gas" => PURPLE,
         "surface" => ORANGE,
+        "hopf" => VERMILLION,
+        "branch-point" => GREEN,
         _ => BLUE,
     }
 }
@@ -64,7 +66,11 @@ pub(super) fn form(kind: &str) -> Form {
         "branch-point" => Form::Square,
         "zero-force" => Form::Up,
         "pull-off" => Form::Down,
-        "hopf" => Form::Ring,
+        "hopf" | "generalised-hopf" => Form::Ring,
+        "cusp" => Form::Up,
+        "bogdanov-takens" => Form::Square,
+        "zero-hopf" => Form::Diamond,
+        "double-hopf" => Form::HollowDiamond,
         other if other.ends_with("-maximum") => Form::Diamond,
         other if other.ends_with("-minimum") => Form::HollowDiamond,
         _ => Form::Cross,

@@ -5,6 +5,9 @@ mod contact;
 mod diagram;
 mod form;
 mod general;
+mod map;
+
+pub(crate) use map::run_map;
 
 use crate::case::{CatalogueEntry, PathCase, ProblemCase, ResolvedCase};
 use crate::output::TraceResult;

@@ -24,10 +24,19 @@ const FINE: f64 = 1e-8;
 /// Longest step, in units of the direction.
 const LONGEST: f64 = 0.1;
 
+/// A direction of unknowns and first parameter, and the multiple of it that is a natural unit.
+#[derive(Clone, Copy)]
+pub(super) struct Along<'v> {
+    pub(super) u: &'v [f64],
+    pub(super) p: f64,
+    pub(super) unit: f64,
+}
+
 /// Work space of the differences along one direction.
 pub(super) struct Differences<P: Problem> {
     shifted: P::Jacobian,
     place: Vec<f64>,
+    p: Vec<f64>,
     value: Vec<f64>,
     /// Step, in units of the direction; 0 until it is known.
     step: f64,
@@ -49,6 +58,7 @@ impl<P: Problem> Differences<P> {
         Differences {
             shifted: problem.new_jacobian(),
             place: vec![0.0; n],
+            p: vec![0.0; problem.parameters().len()],
             value: vec![0.0; n],
             step: 0.0,
             derivatives: vec![vec![0.0; n]; all],
@@ -60,23 +70,23 @@ impl<P: Problem> Differences<P> {
         }
     }
 
-    /// Computes the derivatives along `unit · v`, times `1/unit`: those along `v`, with a step in
-    /// the natural unit.
+    /// Computes the derivatives along `v`. The first of the parameters is the one that varies with
+    /// it.
     pub(super) fn along(
         &mut self,
         problem: &P,
         (u, p): (&[f64], &[f64]),
-        (v, unit): (&[f64], f64),
-        lefts: [&[f64]; 2],
+        v: Along<'_>,
+        lefts: &[&[f64]],
     ) -> Result<(), EvalError> {
         let mut apart = f64::INFINITY;
         if self.step > 0.0
-            && let Ok(found) = self.differ(problem, (u, p), (v, unit), lefts)
+            && let Ok(found) = self.differ(problem, (u, p), v, lefts)
         {
             apart = found;
         }
         if apart > POOR {
-            self.search(problem, (u, p), (v, unit), lefts)?;
+            self.search(problem, (u, p), v, lefts)?;
         } else if apart < FINE {
             self.step = (1.25 * self.step).min(LONGEST);
         }
@@ -88,8 +98,8 @@ impl<P: Problem> Differences<P> {
         &mut self,
         problem: &P,
         at: (&[f64], &[f64]),
-        v: (&[f64], f64),
-        lefts: [&[f64]; 2],
+        v: Along<'_>,
+        lefts: &[&[f64]],
     ) -> Result<(), EvalError> {
         let (mut best, mut least) = (0.0, f64::INFINITY);
         let mut failure = EvalError::NotFinite { at: 0 };
@@ -116,25 +126,32 @@ impl<P: Problem> Differences<P> {
         &mut self,
         problem: &P,
         (u, p): (&[f64], &[f64]),
-        (v, unit): (&[f64], f64),
-        lefts: [&[f64]; 2],
+        v: Along<'_>,
+        lefts: &[&[f64]],
     ) -> Result<f64, EvalError> {
-        let h = self.step * unit;
+        let h = self.step * v.unit;
         for part in self.derivatives.iter_mut().chain(&mut self.lower) {
             part.fill(0.0);
         }
         self.size = 0.0;
+        // the products nearly vanish; their rounding is that of the terms
+        let mut terms = 0.0_f64;
         for (place, fourth, second) in PLACES {
-            for ((x, u), v) in self.place.iter_mut().zip(u).zip(v) {
+            for ((x, u), v) in self.place.iter_mut().zip(u).zip(v.u) {
                 *x = u + place * h * v;
             }
-            problem.jacobian(&self.place, p, &mut self.shifted)?;
+            self.p.copy_from_slice(p);
+            self.p[self.parameters[0].0] += place * h * v.p;
+            problem.jacobian(&self.place, &self.p, &mut self.shifted)?;
+            let largest = lefts.iter().map(|left| max_abs(left)).fold(0.0, f64::max);
+            terms = terms.max(self.shifted.norm() * largest);
             for k in 0..self.derivatives.len() {
                 match k.checked_sub(self.lefts) {
                     None => self.shifted.mul_transpose(lefts[k], &mut self.value),
                     Some(i) => {
                         let which = self.parameters[i];
-                        problem.parameter_derivative(&self.place, p, which, &mut self.value)?;
+                        let at = (&self.place, &self.p);
+                        problem.parameter_derivative(at.0, at.1, which, &mut self.value)?;
                     }
                 }
                 check_finite(&self.value)?;
@@ -156,7 +173,9 @@ impl<P: Problem> Differences<P> {
             }
         }
         let noise = f64::EPSILON * self.size / h;
-        self.error = if largest > 0.0 { (apart / largest).powi(2) + noise / largest } else { 0.0 };
+        let rounding = f64::EPSILON * terms.max(self.size) / h;
+        self.error =
+            if largest > 0.0 { (apart / largest).powi(2) + rounding / largest } else { 0.0 };
         // what rounding explains says nothing against the step
         let real = if apart <= 8.0 * noise { 0.0 } else { apart };
         Ok(if largest > 0.0 { real / largest } else { 0.0 })

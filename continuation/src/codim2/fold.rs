@@ -1,6 +1,6 @@
 //! Curves of folds.
 
-use super::differences::Differences;
+use super::differences::{Along, Differences};
 use super::null::Null;
 use super::trace::{Curve, trace};
 use super::underlying::{CurveError, Underlying};
@@ -66,7 +66,8 @@ struct Work<P: Problem> {
     slopes: [f64; 2],
     /// The direction of which the slopes are known.
     along: Vec<f64>,
-    error: f64,
+    /// Estimated errors of the tests.
+    errors: [f64; 2],
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -116,7 +117,7 @@ impl<'a, P: Problem> FoldCurve<'a, P> {
             tests: [[0.0; 2]; 2],
             slopes: [0.0; 2],
             along: Vec::with_capacity(2 * n + 4 + m),
-            error: 0.0,
+            errors: [0.0; 2],
         };
         problem.jacobian(&base.u, &base.p, &mut work.jacobian)?;
         // arbitrary borders become the null vectors
@@ -158,7 +159,31 @@ impl<'a, P: Problem> FoldCurve<'a, P> {
         let mut all: Vec<Watch> = watches.to_vec();
         all.extend(self.names[self.first_test..].iter().map(|name| Watch::zero(name)));
         let second = self.base.parameters[self.base.second_of_curve().0].name;
-        trace(self, (second, &self.start, &self.base.start()), settings, &all, observer)
+        let start = (second, &self.start[..], &self.base.start()[..]);
+        let mut curve = trace(self, start, settings, &all, observer)?;
+        self.confirm_cusps(&mut curve);
+        Ok(curve)
+    }
+
+    /// Drops zeros of the cusp's test at which neither parameter turns. Where another mode is
+    /// critical too the null vector is not unique, and the test says nothing.
+    fn confirm_cusps(&self, curve: &mut Curve) {
+        let n = self.base.problem.dim();
+        for index in (0..curve.branch.events.len()).rev() {
+            let Event { kind: EventKind::Cusp, point, .. } = curve.branch.events[index] else {
+                continue;
+            };
+            let points = &curve.branch.points;
+            let (Some(before), Some(after)) = (point.checked_sub(1), points.get(point + 1)) else {
+                continue;
+            };
+            let (before, at) = (&points[before], &points[point]);
+            let turns = |x: f64, y: f64, z: f64| (x - y) * (z - y) >= 0.0;
+            let second = turns(before.p, at.p, after.p);
+            if !second && !turns(before.u[n], at.u[n], after.u[n]) {
+                curve.forget(index);
+            }
+        }
     }
 
     /// Brings `work` to the given level at a state.
@@ -188,8 +213,8 @@ impl<'a, P: Problem> FoldCurve<'a, P> {
         if level == Level::Gradient {
             let Work { null, differences, scratch, p, .. } = work;
             let unit = self.base.scales.unknowns / self.base.length(&null.right, scratch);
-            let lefts: [&[f64]; 2] = [&null.left, &[]];
-            differences.along(self.base.problem, (&x[..n], p), (&null.right, unit), lefts)?;
+            let along = Along { u: &null.right, p: 0.0, unit };
+            differences.along(self.base.problem, (&x[..n], p), along, &[&null.left])?;
             work.g_first = -dot(&null.left, &differences.derivatives[1]);
             work.g_second = -dot(&null.left, &differences.derivatives[2]);
             work.level = Level::Gradient;
@@ -199,15 +224,19 @@ impl<'a, P: Problem> FoldCurve<'a, P> {
 
     /// The tests at a state of which the gradient is known.
     fn tests(&self, work: &mut Work<P>) -> [f64; 2] {
-        let Work { null, differences, scratch, g_first, g_second, .. } = work;
+        let Work { null, differences, scratch, g_first, g_second, jacobian, .. } = work;
         let scales = &self.base.scales;
         let row = &differences.derivatives[0];
         let along = scales.unknowns / self.base.length(&null.right, scratch);
         let quadratic = dot(row, &null.right) * along;
         let gradient = dot(row, row).sqrt() * dot(&null.right, &null.right).sqrt() * along;
         let size = gradient.hypot(*g_first * scales.first).hypot(*g_second * scales.second);
-        let noise = max_abs(row) * max_abs(&null.right) * along / size;
-        work.error = if size > 0.0 { differences.error * noise } else { 0.0 };
+        // errors of the differences, and of g itself: rounding of the products with the matrix
+        let norms = [&null.left, &null.right].map(|x| dot(x, x).sqrt());
+        let by_differences = differences.error * max_abs(row) * norms[1] * along;
+        let lengths = norms[0] * norms[1];
+        let by_rounding = f64::EPSILON * jacobian.norm() * lengths;
+        let error = if size > 0.0 { [by_differences / size, by_rounding / size] } else { [0.0; 2] };
         let cusp = if size > 0.0 { quadratic / size } else { 0.0 };
         let mv = match &self.mass {
             Some(mass) => {
@@ -217,7 +246,9 @@ impl<'a, P: Problem> FoldCurve<'a, P> {
             None => &null.right,
         };
         let norms = (dot(&null.left, &null.left) * dot(mv, mv)).sqrt();
-        [cusp, dot(&null.left, mv) / norms]
+        let takens = dot(&null.left, mv) / norms;
+        work.errors = [error[0] + error[1], 8.0 * f64::EPSILON + error[1]];
+        [cusp, takens]
     }
 
     fn tests_at(
@@ -451,14 +482,12 @@ impl<P: Problem> SpecialPoints for FoldCurve<'_, P> {
     }
 
     fn error(&self, observable: usize) -> f64 {
-        match observable.checked_sub(self.first_test) {
-            Some(0) => self.work.borrow().error,
-            Some(_) => 8.0 * f64::EPSILON,
-            None => 0.0,
-        }
+        let errors = self.work.borrow().errors;
+        let test = observable.checked_sub(self.first_test);
+        test.and_then(|test| errors.get(test)).copied().unwrap_or(0.0)
     }
 
-    fn crossing_pair(&self) -> EventKind {
-        EventKind::ZeroHopf
+    fn crossing_pair(&self) -> Option<EventKind> {
+        Some(EventKind::ZeroHopf)
     }
 }

@@ -57,12 +57,18 @@
 //! - W. Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria*, SIAM, 2000.
 //! - Yu. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, ch. 8 and 10.
 
+mod branch_point;
 mod differences;
 mod fold;
+mod hopf;
 mod null;
+mod pair;
+mod takens;
 mod trace;
 mod underlying;
 
+pub use branch_point::BranchPointCurve;
 pub use fold::FoldCurve;
+pub use hopf::HopfCurve;
 pub use trace::Curve;
 pub use underlying::CurveError;

@@ -30,6 +30,18 @@ impl Curve {
         let k = self.branch.observables.iter().position(|o| o == name)?;
         Some(points.map(|point| point.observables[k]).collect())
     }
+
+    /// Removes an event that only marks where the trace was to end.
+    pub(super) fn forget(&mut self, event: usize) {
+        self.branch.events.remove(event);
+        for point in &mut self.branch.points {
+            point.event = match point.event {
+                Some(e) if e == event => None,
+                Some(e) if e > event => Some(e - 1),
+                other => other,
+            };
+        }
+    }
 }
 
 /// Traces `problem` both ways from `(u, p)`.

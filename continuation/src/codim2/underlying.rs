@@ -1,8 +1,10 @@
 //! The problem whose special points form a curve, and how its two parameters are measured.
 
 use crate::branch::{Branch, Event, EventKind, Point};
+use crate::linalg::{Matrix, max_abs};
 use crate::problem::{EvalError, ParamId, Parameter, Problem};
-use crate::step::dot;
+use crate::singular::{Extended, Probe};
+use crate::step::{Weights, dot};
 use crate::tracer::TraceError;
 
 /// Why a curve of special points could not begin.
@@ -77,6 +79,8 @@ pub(super) struct Underlying<'a, P> {
     /// All parameters there.
     pub(super) p: Vec<f64>,
     zero: Vec<f64>,
+    /// Whether the unknowns vary along the branch.
+    moves: bool,
 }
 
 impl<'a, P: Problem> Underlying<'a, P> {
@@ -107,7 +111,7 @@ impl<'a, P: Problem> Underlying<'a, P> {
         }
         let mut p = branch.parameters.clone();
         p[first.0] = at.p;
-        let scales = scales(problem, branch, at, first, second);
+        let (scales, moves) = scales(problem, branch, at, first, second);
         let rest = (0..all.len()).filter(|i| *i != first.0);
         Ok(Underlying {
             problem,
@@ -118,7 +122,50 @@ impl<'a, P: Problem> Underlying<'a, P> {
             u: at.u.clone(),
             p,
             zero: vec![0.0; problem.dim()],
+            moves,
         })
+    }
+
+    /// The same from another state.
+    pub(super) fn from(&self, u: Vec<f64>, p: Vec<f64>) -> Self {
+        Underlying {
+            problem: self.problem,
+            first: self.first,
+            second: self.second,
+            scales: self.scales,
+            parameters: self.parameters.clone(),
+            u,
+            p,
+            zero: self.zero.clone(),
+            moves: self.moves,
+        }
+    }
+
+    /// Where the unknowns do not vary along the branch but for rounding (the trivial solution of a
+    /// symmetric problem), their scale is the amplitude of the critical mode `v` at which the
+    /// nonlinearity does to it as much as the first parameter over its range.
+    pub(super) fn widen(&mut self, v: &[f64]) -> Result<(), EvalError> {
+        let (n, problem) = (self.problem.dim(), self.problem);
+        let Scales { unknowns, first, .. } = self.scales;
+        let weights = Weights { unknowns, parameter: first };
+        let mut probe = Probe::new(problem, self.first, &self.p, weights);
+        let z = Extended { u: self.u.clone(), p: self.p[self.first.0] };
+        probe.assemble(&z)?;
+        let along = Extended { u: vec![0.0; n], p: first };
+        let mode = Extended { u: v.to_vec(), p: 0.0 };
+        let by_parameter = max_abs(&probe.second(&z, &along, 1.0, &[&mode])?[0]);
+        let mut product = vec![0.0; n];
+        probe.jacobian.mul(v, &mut product);
+        let reference = if by_parameter > 0.0 { by_parameter } else { max_abs(&product) };
+        let Some(amplitude) = probe.amplitude(&z, &mode, reference) else { return Ok(()) };
+        let natural = amplitude * self.length(v, &mut product);
+        if !self.moves || unknowns < 1e-6 * natural {
+            self.scales.unknowns = natural;
+            if problem.unknown_scale(self.first).is_none() {
+                self.scales.metric = natural / first;
+            }
+        }
+        Ok(())
     }
 
     /// Index of a parameter of the curve among the problem's.
@@ -198,7 +245,7 @@ fn scales<P: Problem>(
     at: &Point,
     first: ParamId,
     second: ParamId,
-) -> Scales {
+) -> (Scales, bool) {
     let n = problem.dim();
     let (mut d, mut m) = (vec![0.0; n], vec![0.0; n]);
     let (mut unknowns, mut range) = (0.0_f64, 0.0_f64);
@@ -211,8 +258,9 @@ fn scales<P: Problem>(
     let parameters = problem.parameters();
     let positive = |x: f64, otherwise: f64| if x.is_finite() && x > 0.0 { x } else { otherwise };
     let first_scale = positive(range, positive(parameters[first.0].scale.abs(), 1.0));
+    let moves = unknowns.is_finite() && unknowns > 0.0;
     let unknowns = positive(unknowns, 1.0);
     let second = positive(parameters[second.0].scale.abs(), 1.0);
     let metric = if problem.unknown_scale(first).is_some() { 1.0 } else { unknowns / first_scale };
-    Scales { unknowns, first: first_scale, second, metric }
+    (Scales { unknowns, first: first_scale, second, metric }, moves)
 }

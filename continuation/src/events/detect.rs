@@ -14,6 +14,8 @@ pub(crate) enum Candidate {
     BranchPoint { kernel: usize },
     /// The real part of a complex pair of eigenvalues changes sign.
     Hopf,
+    /// On a curve of special points, a real eigenvalue beside the critical ones passes zero.
+    RealEigenvalue,
     /// Observable `observable` crosses `level`.
     Value { observable: usize, level: f64, stop: bool },
     /// The slope of an observable changes sign.
@@ -39,6 +41,7 @@ impl Candidate {
         match *self {
             Candidate::Fold => x.tp,
             Candidate::Hopf => x.pair,
+            Candidate::RealEigenvalue => x.real,
             Candidate::BranchPoint { .. } => f64::from(x.orientation * orientation),
             Candidate::Value { observable, level, .. } => x.values[observable] - level,
             Candidate::Extremum { observable } => x.slopes[observable],
@@ -68,8 +71,15 @@ pub(crate) struct Detector {
     // largest magnitude of each observable so far: below a tiny fraction of it is noise
     magnitude: Vec<f64>,
     found: Vec<Candidate>,
-    // whether the branch consists of special points of another problem
-    extended: bool,
+    // set where the branch consists of special points of another problem
+    extended: Option<Beside>,
+}
+
+/// Which eigenvalues beside the critical ones make an event when they cross the imaginary axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Beside {
+    pub(crate) pair: bool,
+    pub(crate) zero: bool,
 }
 
 /// Whether `a → b` passes zero; an exact zero belongs to the step that arrives at it.
@@ -96,7 +106,7 @@ impl Detector {
         observables: &[&'static str],
         target: Option<f64>,
         domain: Option<(f64, f64)>,
-        extended: bool,
+        extended: Option<Beside>,
     ) -> Result<Self, String> {
         let index =
             |name: &String| observables.iter().position(|o| o == name).ok_or_else(|| name.clone());
@@ -171,15 +181,15 @@ impl Detector {
         // where the parameter stands still to rounding, its turns are noise
         let vertical = a.tp.abs().max(b.tp.abs()) < VERTICAL * range;
         let into_noise = b.tp.abs() < NOISE * range;
-        if into_noise && !vertical && !final_say && !self.extended {
+        if into_noise && !vertical && !final_say && self.extended.is_none() {
             return Err(Refusal::Unresolved);
         }
         let fold = crosses(a.tp, b.tp) && !vertical && !into_noise;
         if !final_say && !vertical && self.parameter_unresolved(&p) {
             return Err(Refusal::Unresolved);
         }
-        if self.extended {
-            self.detect_beside_critical(a, b, final_say)?;
+        if let Some(beside) = self.extended {
+            self.detect_beside_critical(a, b, beside, final_say)?;
         } else {
             if fold {
                 self.found.push(Candidate::Fold);
@@ -216,7 +226,10 @@ impl Detector {
                             crosses(a.p - value, p.value(x) - value)
                         }))
                 }
-                Candidate::Fold | Candidate::BranchPoint { .. } | Candidate::Hopf => false,
+                Candidate::Fold
+                | Candidate::BranchPoint { .. }
+                | Candidate::Hopf
+                | Candidate::RealEigenvalue => false,
             };
             if hit {
                 self.found.push(candidate);
@@ -298,12 +311,13 @@ impl Detector {
         Ok(())
     }
 
-    /// On a curve of special points: branch points of the curve, and pairs of eigenvalues beside
-    /// the critical ones that cross the imaginary axis.
+    /// On a curve of special points: branch points of the curve, and eigenvalues beside the
+    /// critical ones that cross the imaginary axis.
     fn detect_beside_critical(
         &mut self,
         a: &State,
         b: &State,
+        beside: Beside,
         final_say: bool,
     ) -> Result<(), Refusal> {
         if a.orientation * b.orientation < 0 {
@@ -313,13 +327,21 @@ impl Detector {
             (Some(before), Some(after)) => before.abs_diff(after),
             _ => 0,
         };
-        if change < 2 {
-            return Ok(());
-        }
-        if crosses(a.pair, b.pair) && change == 2 && a.pairs == b.pairs {
-            self.found.push(Candidate::Hopf);
-        } else if a.certified && b.certified && !final_say {
+        let pair = crosses(a.pair, b.pair) && a.pairs == b.pairs;
+        let clear = match change {
+            0 => true,
+            1 => !pair,
+            2 => pair,
+            _ => false,
+        };
+        if !clear && beside.pair && a.certified && b.certified && !final_say {
             return Err(Refusal::Stability);
+        }
+        if beside.zero && change % 2 == 1 && crosses(a.real, b.real) {
+            self.found.push(Candidate::RealEigenvalue);
+        }
+        if beside.pair && change >= 2 && pair {
+            self.found.push(Candidate::Hopf);
         }
         Ok(())
     }

@@ -5,7 +5,7 @@ mod hermite;
 mod locate;
 mod root;
 
-pub(crate) use detect::{Candidate, Detector, Role};
+pub(crate) use detect::{Beside, Candidate, Detector, Role};
 pub(crate) use hermite::basis;
 pub(crate) use locate::{Located, bend, interpolate, locate};
 

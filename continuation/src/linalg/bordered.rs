@@ -201,7 +201,7 @@ impl Bordered {
                     facts.perturbed += usize::from(replaced);
                     facts.schur = delta;
                     let growth = self.core_norm * max_abs(&z[..n]);
-                    unknown |= k > 0 && growth > SINGULAR * max_abs(self.column(k));
+                    unknown |= k > 0 && growth > SINGULAR * self.right_side(k);
                     last_replaced = replaced;
                     facts.inertia = facts.inertia.map(|(negative, positive)| {
                         if delta < 0.0 {
@@ -260,6 +260,19 @@ impl Bordered {
         [&mut self.b, &mut self.c, &mut self.d]
     }
 
+    /// Size of column `k` as a right-hand side of the core with the borders before it: its entries
+    /// in their rows count as what the core makes of the state that they ask for.
+    fn right_side(&self, k: usize) -> f64 {
+        let mut size = max_abs(self.column(k));
+        for i in 0..k {
+            let row = max_abs(self.row(i));
+            if row > 0.0 {
+                size = size.max(self.core_norm * self.corner(i, k, false).abs() / row);
+            }
+        }
+        size
+    }
+
     fn is_symmetric(&self) -> bool {
         self.b == self.c
             && (0..self.m)
@@ -278,6 +291,11 @@ impl Bordered {
             let term = self.corner(k, i, transposed) * z[self.n + i];
             value -= term;
             scale += term.abs();
+        }
+        if scale == 0.0 {
+            // nothing but zeros so far: what the borders to come have in this row and column
+            let entries = (0..self.m).flat_map(|i| [(i, k), (k, i)]);
+            scale = entries.map(|(i, j)| self.corner(i, j, false).abs()).fold(0.0, f64::max);
         }
         pivot_or_floor(value, if scale > 0.0 { noise * f64::EPSILON * scale } else { 1.0 })
     }

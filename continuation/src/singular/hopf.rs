@@ -160,6 +160,20 @@ impl<P: Problem> Critical<P> {
         (finite(&right) && finite(&left)).then_some(Critical { right, left, mass_right, g, mass })
     }
 
+    /// Real and imaginary part of the right eigenvector `q`, of length 1, and the left one `p`
+    /// with `pᴴ M q = 1`.
+    fn eigenvectors(&self) -> (Extended, Extended, Complex) {
+        let mut q = self.right.clone();
+        q.normalise();
+        let (re, im) = self.left.dot(&self.mass.times(&q));
+        let size = re * re + im * im;
+        let (c, s) = (re / size, im / size);
+        let turn = |w: &[f64]| [c * w[0] - s * w[1], c * w[1] + s * w[0]];
+        let p = Complex(self.left.0.chunks_exact(2).flat_map(turn).collect());
+        let (a, b) = q.split();
+        (Extended { u: a, p: 0.0 }, Extended { u: b, p: 0.0 }, p)
+    }
+
     /// The right vector's real and imaginary parts.
     fn parts(&self) -> (Extended, Extended) {
         let (re, im) = self.right.split();
@@ -208,23 +222,7 @@ fn normal_form<P: Problem>(
     omega: f64,
     critical: &Critical<P>,
 ) -> Result<Option<HopfForm>, EvalError> {
-    let mut q = critical.right.clone();
-    q.normalise();
-    let mq = critical.mass.times(&q);
-    // p such that pᴴ M q = 1
-    let (re, im) = critical.left.dot(&mq);
-    let size = re * re + im * im;
-    let (c, s) = (re / size, im / size);
-    let p = Complex(
-        critical
-            .left
-            .0
-            .chunks_exact(2)
-            .flat_map(|w| [c * w[0] - s * w[1], c * w[1] + s * w[0]])
-            .collect(),
-    );
-    let (a, b) = q.split();
-    let (a, b) = (Extended { u: a, p: 0.0 }, Extended { u: b, p: 0.0 });
+    let (a, b, p) = critical.eigenvectors();
     let by_branch = probe.second(z, t, 1.0, &[&a, &b])?;
     let reference = super::max_abs(&by_branch[0]).max(super::max_abs(&by_branch[1]));
     let amplitude = if reference > 0.0 { probe.amplitude(z, &a, reference) } else { None };
@@ -244,6 +242,44 @@ fn normal_form<P: Problem>(
         _ => Some(Criticality::Subcritical),
     };
     Ok(Some(HopfForm { frequency: omega, lyapunov, lyapunov_error, criticality }))
+}
+
+/// The first Lyapunov coefficient and its estimated error at `z`, where `probe` is assembled, with
+/// critical eigenvalues `±iω` and the null vectors of `f_u − iωM`, their real and imaginary parts in
+/// turn. `None` where the matrix has no complex form.
+pub(crate) fn lyapunov_coefficient<P: Problem>(
+    probe: &mut Probe<'_, P>,
+    z: &Extended,
+    omega: f64,
+    right: &[f64],
+    left: &[f64],
+) -> Result<Option<(f64, f64)>, EvalError> {
+    let Some(mass) = Mass::of(probe) else { return Ok(None) };
+    let (right, left) = (Complex(right.to_vec()), Complex(left.to_vec()));
+    let mass_right = mass.times(&right);
+    let critical = Critical { right, left, mass_right, g: (0.0, 0.0), mass };
+    let (a, b, p) = critical.eigenvectors();
+    // where the nonlinearity does as much as the oscillation
+    let (mut by_a, mut by_b) = (vec![0.0; probe.dim()], vec![0.0; probe.dim()]);
+    probe.jacobian.mul(&a.u, &mut by_a);
+    probe.jacobian.mul(&b.u, &mut by_b);
+    let reference = super::max_abs(&by_a).max(super::max_abs(&by_b));
+    // of slow oscillations beside fast modes more: rounding is that of the whole matrix
+    let whole = probe.jacobian.norm() * super::max_abs(&a.u).max(super::max_abs(&b.u));
+    let reference = reference * (whole / reference).sqrt().clamp(1.0, 20.0);
+    let amplitude = probe.natural(z, &a, reference).unwrap_or(1.0);
+    let mut value = [f64::NAN; 3];
+    for (value, x) in value.iter_mut().zip([4.0, 2.0, 1.0]) {
+        let x = x * amplitude;
+        let Some(l) = lyapunov(probe, z, omega, &critical, &p, (&a, &b), x)? else {
+            return Ok(None);
+        };
+        *value = l;
+    }
+    // differences of order four, extrapolated; shorter steps show the rounding errors
+    let extrapolated = |coarse: f64, fine: f64| fine + (fine - coarse) / 15.0;
+    let [value, check] = [extrapolated(value[0], value[1]), extrapolated(value[1], value[2])];
+    Ok(Some((value, (value - check).abs())))
 }
 
 fn lyapunov<P: Problem>(

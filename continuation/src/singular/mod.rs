@@ -17,7 +17,7 @@ mod small;
 
 pub(crate) use defect::Defect;
 pub(crate) use fold::fold_form;
-pub(crate) use hopf::locate_hopf;
+pub(crate) use hopf::{locate_hopf, lyapunov_coefficient};
 pub(crate) use kernel::{arbitrary, find};
 pub(crate) use probe::{Extended, Probe};
 

@@ -84,6 +84,11 @@ impl<'a, P: Problem> Probe<'a, P> {
         }
     }
 
+    /// Replaces the values of all parameters.
+    pub(crate) fn set_parameters(&mut self, p: &[f64]) {
+        self.p.copy_from_slice(p);
+    }
+
     pub(crate) fn dim(&self) -> usize {
         self.residual.len()
     }
@@ -191,6 +196,34 @@ impl<'a, P: Problem> Probe<'a, P> {
         self.stencil(z, v, &terms, xs)
     }
 
+    /// Largest component of `([F_u F_p](z + x v) − [F_u F_p](z)) v`.
+    fn change(
+        &mut self,
+        z: &Extended,
+        v: &Extended,
+        x: f64,
+        out: &mut [Vec<f64>],
+    ) -> Result<f64, EvalError> {
+        out[0].fill(0.0);
+        self.accumulate(z, v, x, 1.0, &[v], out)?;
+        self.accumulate(z, v, 0.0, -1.0, &[v], out)?;
+        Ok(super::max_abs(&out[0]))
+    }
+
+    /// [`Self::amplitude`] to a factor of two or so, where the change is about linear in it: steps
+    /// that do not depend on the unit of the unknowns.
+    pub(crate) fn natural(&mut self, z: &Extended, v: &Extended, reference: f64) -> Option<f64> {
+        let mut x = self.amplitude(z, v, reference)?;
+        let mut out = vec![vec![0.0; self.dim()]];
+        for _ in 0..3 {
+            match self.change(z, v, x, &mut out) {
+                Ok(change) if change > 0.0 => x *= (reference / change).clamp(0.01, 20.0),
+                _ => break,
+            }
+        }
+        Some(x)
+    }
+
     /// The multiple `X` of `v` for which `[F_u F_p](z + X v) − [F_u F_p](z)`, applied to `v`, is as
     /// large as `reference`: where the nonlinearity matters. It scales with the unknowns, whatever
     /// their unit. `None` if no multiple within twelve decades is found: the problem is linear in
@@ -200,11 +233,7 @@ impl<'a, P: Problem> Probe<'a, P> {
         let mut out = vec![vec![0.0; self.dim()]];
         let (mut too_small, mut too_large) = (0.0_f64, f64::INFINITY);
         for _ in 0..40 {
-            out[0].fill(0.0);
-            let change = self
-                .accumulate(z, v, x, 1.0, &[v], &mut out)
-                .and_then(|()| self.accumulate(z, v, 0.0, -1.0, &[v], &mut out))
-                .map(|()| super::max_abs(&out[0]) / reference);
+            let change = self.change(z, v, x, &mut out).map(|change| change / reference);
             match change {
                 Ok(m) if (0.05..=5.0).contains(&m) => return Some(x),
                 Ok(m) if m < 0.05 => {

@@ -60,6 +60,7 @@ impl<P: Problem> StabilityCount<P> {
         (x.unstable, x.count, x.certified) = (None, None, false);
         (x.pair, x.frequency, x.pairs) = (f64::NAN, f64::NAN, 0);
         (x.unstable_pairs, x.critical) = (0, false);
+        x.real = f64::NAN;
         x.eigenvalues.clear();
         if let Some(curve) = problem.special_points() {
             p[which.0] = x.p;
@@ -105,6 +106,8 @@ impl<P: Problem> StabilityCount<P> {
         if energy {
             return;
         }
+        let real = spectrum.iter().filter(|(_, im)| *im == 0.0).map(|(re, _)| *re);
+        x.real = real.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(f64::NAN);
         let pairs = spectrum.iter().filter(|(_, im)| *im > 0.0);
         x.pairs = pairs.clone().count();
         x.unstable_pairs = pairs.clone().filter(|(re, _)| *re > zero).count();

@@ -37,6 +37,8 @@ pub(crate) struct State {
     /// Whether an eigenvalue lies on the border of stability to rounding: the state is a special
     /// point itself.
     pub(crate) critical: bool,
+    /// Real eigenvalue nearest to zero; NaN without one, or where the spectrum is not known.
+    pub(crate) real: f64,
     /// Number of complex pairs, where the spectrum is known.
     pub(crate) pairs: usize,
     /// Observables.
@@ -61,6 +63,7 @@ impl State {
             eigenvalues: Vec::new(),
             pair: f64::NAN,
             frequency: f64::NAN,
+            real: f64::NAN,
             pairs: 0,
             unstable_pairs: 0,
             critical: false,
@@ -86,6 +89,7 @@ impl State {
         self.eigenvalues.clone_from(&other.eigenvalues);
         self.pair = other.pair;
         self.frequency = other.frequency;
+        self.real = other.real;
         self.pairs = other.pairs;
         self.unstable_pairs = other.unstable_pairs;
         self.critical = other.critical;

@@ -27,7 +27,7 @@ pub use input::{Progress, TraceError};
 pub(crate) use snapshot::Snapshot;
 
 use crate::branch::{Branch, Event, Point, Statistics, Stop, StopReason};
-use crate::events::{Detector, Watch};
+use crate::events::{Beside, Detector, Watch};
 use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem};
 use crate::settings::{Settings, SettingsError};
@@ -78,7 +78,10 @@ fn detector<P: Problem>(
     settings: &Settings,
 ) -> Result<Detector, TraceError> {
     let (target, domain) = (settings.target, settings.domain);
-    let extended = problem.special_points().is_some();
+    let extended = problem.special_points().map(|curve| Beside {
+        pair: curve.crossing_pair().is_some(),
+        zero: curve.crossing_zero().is_some(),
+    });
     Detector::new(watches, problem.observables(), target, domain, extended)
         .map_err(|name| unknown_observable(problem, name))
 }
@@ -130,6 +133,8 @@ impl<'a, P: Problem> Tracer<'a, P> {
         core.start(&mut start, increasing, range, |along, size| match natural {
             Some(scale) => Weights { unknowns: scale, parameter: scale },
             None => {
+                // a tangent along the parameter but for rounding says nothing
+                let along = if along > 1e-8 * size { along } else { 0.0 };
                 let unknowns = [along, size, 1.0].into_iter().find(|x| x.is_finite() && *x > 0.0);
                 Weights { unknowns: unknowns.unwrap_or(1.0), parameter: range }
             }

@@ -213,7 +213,8 @@ impl<P: Problem> Tracer<'_, P> {
     fn kind(&self, candidate: &Candidate) -> Option<EventKind> {
         if let Some(curve) = self.core.problem.special_points() {
             let special = match *candidate {
-                Candidate::Hopf => Some(curve.crossing_pair()),
+                Candidate::Hopf => curve.crossing_pair(),
+                Candidate::RealEigenvalue => curve.crossing_zero(),
                 Candidate::Value { observable, level: 0.0, .. } => curve.zero(observable),
                 _ => None,
             };
@@ -226,6 +227,7 @@ impl<P: Problem> Tracer<'_, P> {
             Candidate::Fold => Some(EventKind::Fold),
             Candidate::BranchPoint { .. } => Some(EventKind::BranchPoint),
             Candidate::Hopf => Some(EventKind::Hopf),
+            Candidate::RealEigenvalue => None,
             Candidate::Value { observable, level: 0.0, .. } => {
                 Some(EventKind::Zero(name(observable)))
             }

@@ -331,3 +331,36 @@ fn real_form_of_a_complex_matrix_that_is_singular() {
         case.check_solutions(&mut dense.clone(), &mut random);
     }
 }
+
+/// A column of the border that is zero but for its corner, over a singular core: what a parameter
+/// that does not act on a trivial solution leaves.
+#[test]
+fn columns_that_are_zero_but_for_their_corner() {
+    let corner = |d: [[f64; 2]; 2], b: [[f64; 3]; 2], c: [[f64; 3]; 2], core: [f64; 3]| {
+        let mut a = Dense::new(3);
+        let mut solver = Bordered::new(3, 2);
+        let mut mat = Mat::zeros(5, 5);
+        for i in 0..3 {
+            a.set(i, i, core[i]);
+            mat[(i, i)] = core[i];
+        }
+        for k in 0..2 {
+            solver.column_mut(k).copy_from_slice(&b[k]);
+            solver.row_mut(k).copy_from_slice(&c[k]);
+            (0..3).for_each(|i| (mat[(i, 3 + k)], mat[(3 + k, i)]) = (b[k][i], c[k][i]));
+            for i in 0..2 {
+                solver.set_corner(i, k, d[i][k]);
+                mat[(3 + i, 3 + k)] = d[i][k];
+            }
+        }
+        let facts = Case { solver, mat }.check(&mut a, &mut Random(5));
+        assert!(facts.det_sign.is_some());
+    };
+    let zero = [0.0; 3];
+    let [b, c] = [[1.0, 0.5, 0.2], [0.7, -0.3, 0.4]];
+    // the singular core cured by the first border, the second column without entries beside it
+    corner([[0.0, 5.0], [0.0, 1.0]], [b, zero], [c, c], [0.0, 2.0, 3.0]);
+    corner([[0.0, 50.0], [0.0, 1.0]], [b, zero], [c, [0.1, 0.2, 0.3]], [0.0, 20.0, 30.0]);
+    // the first column and its corner zero, its other end beside the second border
+    corner([[0.0, 2.0], [3.0, 1.0]], [zero, b], [c, b], [1.0, 2.0, 3.0]);
+}

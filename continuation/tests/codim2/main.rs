@@ -1,6 +1,11 @@
 //! Curves of special points in two parameters, with known special points of codimension two.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
+
+mod bands;
+mod branch_points;
+mod hopf;
+mod invariance;
 
 use continuation::codim2::{Curve, CurveError, FoldCurve};
 use continuation::samples::Cusp;
@@ -37,7 +42,8 @@ fn account(curve: &Curve, first: &str) -> String {
             format!("{} ({:.13}, {:.13}) ±{:.1e}", e.kind, column[e.point], e.p, e.error_estimate)
         })
         .collect();
-    format!("{} points, {:?}: {}", column.len(), curve.branch.statistics, all.join("; "))
+    let ends = (&curve.first_end.detail, &curve.branch.stopped.detail);
+    format!("{} points, {:?}: {} {ends:?}", column.len(), curve.branch.statistics, all.join("; "))
 }
 
 #[test]

@@ -1,0 +1,46 @@
+//! The picture of a map: curves of special points over the second parameter.
+
+use super::chart::DrawError;
+use super::data::{Curve, Mark};
+use super::draw::{self, DISTANCE};
+use crate::output::MapResult;
+
+/// Name of the picture.
+pub(crate) const MAP: &str = "map.svg";
+
+/// The map as SVG: the first parameter over the second, one colour for each kind of curve.
+///
+/// # Errors
+/// When the drawing library fails.
+pub(crate) fn draw_map(result: &MapResult) -> Result<String, DrawError> {
+    let mut curves: Vec<Curve> = Vec::new();
+    for curve in &result.curves {
+        match curves.iter_mut().find(|known| known.label == curve.kind) {
+            Some(known) => {
+                // a gap between curves of a kind
+                known.x.push(f64::NAN);
+                known.y.push(f64::NAN);
+                known.x.extend_from_slice(&curve.second);
+                known.y.extend_from_slice(&curve.first);
+            }
+            None => curves.push(Curve {
+                label: curve.kind.clone(),
+                x: curve.second.clone(),
+                y: curve.first.clone(),
+                ..Curve::default()
+            }),
+        }
+    }
+    if let Some(last) = curves.last_mut() {
+        last.marks = result
+            .points
+            .iter()
+            .map(|point| Mark { kind: point.kind.clone(), x: point.second, y: point.first })
+            .collect();
+    }
+    let y = match result.parameter.as_str() {
+        "z0" => DISTANCE,
+        other => other,
+    };
+    draw::map(&result.case, &result.key, y, &curves)
+}

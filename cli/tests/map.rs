@@ -1,0 +1,120 @@
+//! Maps as scripts see them: files, columns, exit codes, numbers.
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn arclen(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_arclen")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn json(folder: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(folder.join("map.json")).unwrap()).unwrap()
+}
+
+fn points<'j>(json: &'j Value, kind: &str) -> Vec<&'j Value> {
+    json["points"].as_array().unwrap().iter().filter(|p| p["kind"] == kind).collect()
+}
+
+fn near(value: &Value, known: f64, tolerance: f64) {
+    let value = value.as_f64().unwrap();
+    assert!((value - known).abs() < tolerance, "{value} is not {known}");
+}
+
+#[test]
+fn co_oxidation_over_k_has_every_special_point_once() {
+    let place = tempfile::tempdir().unwrap();
+    let output = arclen(place.path(), &["map", "co-oxidation", "--over", "k", "--out", "o"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let out = place.path().join("o");
+    let json = json(&out);
+    let curves: Vec<&str> =
+        json["curves"].as_array().unwrap().iter().map(|c| c["kind"].as_str().unwrap()).collect();
+    // two folds and two Hopf points on the base branch, one curve each pair
+    assert_eq!(curves, ["fold", "hopf"]);
+    for file in ["fold-0.csv", "hopf-0.csv", "map.json", "map.svg", "case.toml"] {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+    let cusp = points(&json, "cusp");
+    assert_eq!(cusp.len(), 1);
+    near(&cusp[0]["p"], 1.006_408_329_678_3, 1e-9);
+    near(&cusp[0]["k"], 0.355_991_273_209, 1e-9);
+    let mut takens = points(&json, "bogdanov-takens");
+    takens.sort_by(|a, b| a["k"].as_f64().unwrap().total_cmp(&b["k"].as_f64().unwrap()));
+    assert_eq!(takens.len(), 2);
+    near(&takens[0]["p"], 1.161_198_708_821_7, 1e-9);
+    near(&takens[1]["k"], 0.971_397_573_485, 1e-9);
+    assert!(takens.iter().all(|t| t["curves"].as_array().unwrap().len() == 2));
+    assert_eq!(points(&json, "generalised-hopf").len(), 2);
+    assert!(json["points"].as_array().unwrap().iter().all(|p| p["error_estimate"].is_f64()));
+    let table = fs::read_to_string(out.join("hopf-0.csv")).unwrap();
+    assert!(table.starts_with("point,p,k,x,y,s,omega,unstable,event\n"), "{table:.60}");
+    assert!(table.contains("generalised-hopf"));
+}
+
+#[test]
+fn the_cusp_lies_within_given_bounds() {
+    let place = tempfile::tempdir().unwrap();
+    let over = ["map", "cusp", "--over", "lambda", "--set", "map.from=-1", "--set", "map.to=2"];
+    let output = arclen(place.path(), &[&over[..], &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(0));
+    assert!(fs::read_dir(place.path()).unwrap().next().is_none(), "--json alone writes no files");
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((json["from"].as_f64(), json["to"].as_f64()), (Some(-1.0), Some(2.0)));
+    let cusp = points(&json, "cusp");
+    assert_eq!(cusp.len(), 1);
+    near(&cusp[0]["mu"], 0.0, 1e-8);
+    near(&cusp[0]["lambda"], 0.0, 1e-8);
+    assert_eq!(json["curves"][0]["stopped_because"], "domain");
+}
+
+/// Without a fold at weak adhesion the map is found at a stronger one.
+#[test]
+fn a_case_without_a_fold_is_searched() {
+    let place = tempfile::tempdir().unwrap();
+    let arguments = ["map", "fig07", "--over", "dimensionless.adhesion", "--elements", "100"];
+    let output = arclen(place.path(), &[&arguments[..], &["--out", "o"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let json = json(&place.path().join("o"));
+    assert!(json["notes"][0].as_str().unwrap().contains("curves begin at"));
+    let cusp = points(&json, "cusp");
+    assert_eq!(cusp.len(), 1);
+    near(&cusp[0]["z0"], 1.08846, 2e-5);
+    near(&cusp[0]["adhesion"], 6.4976e-3, 2e-6);
+    assert!(cusp[0]["force"].as_f64().unwrap() < 0.0);
+}
+
+#[test]
+fn a_map_cut_short_keeps_its_points() {
+    let place = tempfile::tempdir().unwrap();
+    let few = ["map", "co-oxidation", "--over", "k", "--set", "path.max_points=30", "--out", "o"];
+    let output = arclen(place.path(), &few);
+    assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(json(&place.path().join("o"))["stopped_because"], "max-points");
+}
+
+#[test]
+fn wrong_keys_are_refused_with_the_right_ones() {
+    let place = tempfile::tempdir().unwrap();
+    for (arguments, words) in [
+        (vec!["co-oxidation", "--over", "q"], vec!["--over q", "allowed here: k"]),
+        (vec!["co-oxidation", "--over", "p"], vec!["is the parameter of the branch"]),
+        (vec!["fig16", "--over", "adhesoin"], vec!["did you mean adhesion?", "surface_tension"]),
+        (vec!["fig16", "--over", "surface_tension"], vec!["map.from and map.to"]),
+        (vec!["fig16", "--over", "adhesion", "--set", "map.from=0.1"], vec!["is not between"]),
+        (vec!["plp", "--over", "p"], vec!["plp"]),
+        (vec!["fig16", "--over", "adhesion", "--set", "map.form=1"], vec!["map.form", "from"]),
+        (vec!["fig16"], vec!["--over"]),
+    ] {
+        let all: Vec<&str> = ["map"].into_iter().chain(arguments.iter().copied()).collect();
+        let output = arclen(place.path(), &all);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        for word in words {
+            assert!(message.contains(word), "{arguments:?}: {message}");
+        }
+    }
+    assert!(fs::read_dir(place.path()).unwrap().next().is_none(), "nothing is created");
+}
