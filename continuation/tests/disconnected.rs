@@ -4,7 +4,9 @@
 
 mod scaled;
 
-use continuation::deflation::{DeflationError, DeflationSettings, disconnected, lies_on};
+use continuation::deflation::{
+    DeflationError, DeflationSettings, disconnected, disconnected_observed, lies_on,
+};
 use continuation::samples::{Bratu, Cusp};
 use continuation::{
     Branch, DenseProblem, EventKind, NearSettings, Problem, Settings, Tracer, both_ways,
@@ -145,6 +147,19 @@ fn neighbours_at_a_fold_lie_on_one_branch() {
     }
     // not at another value of the other parameter
     assert!(!lies_on(&Cusp, &branch, &[1.0], &[0.0, 2.0], &search).unwrap());
+}
+
+#[test]
+fn a_search_that_is_ended_returns_what_it_found() {
+    let branches = explore(&Cusp, &[-1.3], &[-1.0, 1.0], &within(-1.2, 0.3), &[]);
+    let search = DeflationSettings::default();
+    let (mut calls, mut seen) = (0, 0);
+    let found = disconnected_observed(&Cusp, &branches, &[], &[0.0, 0.1], &search, &mut |report| {
+        (calls, seen) = (calls + 1, report.found);
+        if seen == 1 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert_eq!((found.unwrap().len(), seen), (1, 1));
+    assert!(calls > 0);
 }
 
 #[test]

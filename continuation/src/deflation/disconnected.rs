@@ -1,12 +1,15 @@
 //! Solutions that are on none of the known branches.
 
 use super::known::Known;
-use super::{Deflation, DeflationError, DeflationSettings, check, check_branch, passing};
+use super::{
+    Deflation, DeflationError, DeflationReport, DeflationSettings, check, check_branch, passing,
+};
 use crate::branch::Branch;
 use crate::near::NearBifurcation;
 use crate::problem::Problem;
 use crate::step::dot;
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
 
 /// Points of each branch from which attempts start.
 const STATES: usize = 12;
@@ -74,6 +77,32 @@ pub fn disconnected<P: Problem>(
     values: &[f64],
     settings: &DeflationSettings,
 ) -> Result<Vec<OffBranch>, DeflationError> {
+    let mut go_on = |_: &DeflationReport| ControlFlow::Continue(());
+    disconnected_observed(problem, branches, near, values, settings, &mut go_on)
+}
+
+/// The same; the observer is called after every attempt, with the report of the search at that value of
+/// the parameter, and may end all of it. Nothing found is lost.
+///
+/// # Errors
+/// As for [`disconnected`].
+pub fn disconnected_observed<P: Problem>(
+    problem: &P,
+    branches: &[Branch],
+    near: &[NearBifurcation],
+    values: &[f64],
+    settings: &DeflationSettings,
+    observer: &mut dyn FnMut(&DeflationReport) -> ControlFlow<()>,
+) -> Result<Vec<OffBranch>, DeflationError> {
+    let mut run = |search: Deflation<'_, P>| {
+        let mut stopped = false;
+        let found = search.run_observed(&mut |report| {
+            let flow = observer(report);
+            stopped |= flow.is_break();
+            flow
+        });
+        (found.solutions.into_iter().map(|s| s.u).collect::<Vec<_>>(), stopped)
+    };
     let first = branches.first().ok_or(DeflationError::NoBranch)?;
     let which = check_branch(problem, first)?;
     check("the chosen values", values, values.len())?;
@@ -91,10 +120,14 @@ pub fn disconnected<P: Problem>(
             for side in [1.0, -1.0] {
                 for value in offsets(branches, which, problem, one, side, inside) {
                     let p = at(value);
-                    let solutions = beside(problem, branches, which, one, &p, settings)?;
+                    let search = beside(problem, branches, which, one, &p, settings)?;
+                    let (solutions, stopped) = run(search);
                     let some = !solutions.is_empty();
                     let start = |u| OffBranch { u, p: p.clone(), near: Some(k) };
                     found.extend(solutions.into_iter().map(start));
+                    if stopped {
+                        return Ok(found);
+                    }
                     if some {
                         break;
                     }
@@ -111,8 +144,11 @@ pub fn disconnected<P: Problem>(
         for branch in branches {
             search = search.along(branch, STATES)?;
         }
-        let solutions = search.run().solutions.into_iter();
-        found.extend(solutions.map(|s| OffBranch { u: s.u, p: p.clone(), near: None }));
+        let (solutions, stopped) = run(search);
+        found.extend(solutions.into_iter().map(|u| OffBranch { u, p: p.clone(), near: None }));
+        if stopped {
+            break;
+        }
     }
     Ok(found)
 }
@@ -174,15 +210,15 @@ fn offsets<P: Problem>(
     OFFSETS.into_iter().map(value).filter(allowed).collect()
 }
 
-/// Solutions on no branch at the parameters `p`, near a near-bifurcation.
-fn beside<P: Problem>(
-    problem: &P,
+/// The search at the parameters `p` beside a near-bifurcation.
+fn beside<'a, P: Problem>(
+    problem: &'a P,
     branches: &[Branch],
     which: usize,
     near: &NearBifurcation,
     p: &[f64],
     settings: &DeflationSettings,
-) -> Result<Vec<Vec<f64>>, DeflationError> {
+) -> Result<Deflation<'a, P>, DeflationError> {
     let settings = DeflationSettings { modes: 0, ..settings.clone() };
     let mut starts: Vec<Vec<f64>> = Vec::new();
     let mut m = vec![0.0; problem.dim()];
@@ -216,5 +252,5 @@ fn beside<P: Problem>(
     for branch in branches {
         search = search.along(branch, 0)?;
     }
-    Ok(search.run().solutions.into_iter().map(|s| s.u).collect())
+    Ok(search)
 }

@@ -52,7 +52,7 @@ mod passing;
 mod settings;
 mod starts;
 
-pub use disconnected::{OffBranch, disconnected, lies_on};
+pub use disconnected::{OffBranch, disconnected, disconnected_observed, lies_on};
 pub use settings::DeflationSettings;
 
 use crate::branch::Branch;
