@@ -133,7 +133,8 @@ pub(crate) struct MapArguments {
     /// Which case.
     #[command(flatten)]
     pub(crate) case: CaseArguments,
-    /// The second parameter: a key of [dimensionless] or [parameters], between map.from and map.to
+    /// The second parameter, a key of the table dimensionless or parameters; its bounds are map.from
+    /// and map.to
     /// [default: a tenth to ten times the case's value]
     #[arg(long, value_name = "KEY")]
     pub(crate) over: String,

@@ -104,7 +104,8 @@ fn wrong_keys_are_refused_with_the_right_ones() {
         (vec!["fig16", "--over", "adhesoin"], vec!["did you mean adhesion?", "surface_tension"]),
         (vec!["fig16", "--over", "surface_tension"], vec!["map.from and map.to"]),
         (vec!["fig16", "--over", "adhesion", "--set", "map.from=0.1"], vec!["is not between"]),
-        (vec!["plp", "--over", "p"], vec!["plp"]),
+        (vec!["plp", "--over", "p"], vec!["plp has no parameter besides p"]),
+        (vec!["pressurised-sphere", "--over", "poisson"], vec!["allowed here: bending"]),
         (vec!["fig16", "--over", "adhesion", "--set", "map.form=1"], vec!["map.form", "from"]),
         (vec!["fig16"], vec!["--over"]),
     ] {

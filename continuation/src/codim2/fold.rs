@@ -4,7 +4,7 @@ use super::differences::{Along, Differences};
 use super::null::Null;
 use super::trace::{Curve, trace};
 use super::underlying::{CurveError, Underlying};
-use crate::branch::{Branch, Event, EventKind};
+use crate::branch::{Branch, Event, EventKind, Point};
 use crate::events::Watch;
 use crate::linalg::{Arrow, Matrix, max_abs};
 use crate::modes::ModeSolver;
@@ -144,6 +144,7 @@ impl<'a, P: Problem> FoldCurve<'a, P> {
     }
 
     /// Traces the curve both ways from its start, with cusps, Bogdanov-Takens and zero-Hopf points.
+    /// A zero of the test is a cusp only if one of the parameters turns there.
     ///
     /// The settings are those of the second parameter: `domain` bounds it. Bounds of the first one
     /// are watched by its name: `Watch::stop_at("p", 2.0)`.
@@ -166,18 +167,25 @@ impl<'a, P: Problem> FoldCurve<'a, P> {
     }
 
     /// Drops zeros of the cusp's test at which neither parameter turns. Where another mode is
-    /// critical too the null vector is not unique, and the test says nothing.
+    /// critical too the null vector is not unique: the test says nothing, and its sign may change
+    /// without a zero.
     fn confirm_cusps(&self, curve: &mut Curve) {
         let n = self.base.problem.dim();
         for index in (0..curve.branch.events.len()).rev() {
-            let Event { kind: EventKind::Cusp, point, .. } = curve.branch.events[index] else {
+            let Event { kind: EventKind::Cusp, point, error_estimate, .. } =
+                curve.branch.events[index]
+            else {
                 continue;
             };
             let points = &curve.branch.points;
-            let (Some(before), Some(after)) = (point.checked_sub(1), points.get(point + 1)) else {
+            let at = &points[point];
+            // neighbours that are apart by more than the error of the location
+            let apart = |other: &&Point| (other.s - at.s).abs() > 1e2 * error_estimate;
+            let before = points[..point].iter().rev().find(apart);
+            let (Some(before), Some(after)) = (before, points[point + 1..].iter().find(apart))
+            else {
                 continue;
             };
-            let (before, at) = (&points[before], &points[point]);
             let turns = |x: f64, y: f64, z: f64| (x - y) * (z - y) >= 0.0;
             let second = turns(before.p, at.p, after.p);
             if !second && !turns(before.u[n], at.u[n], after.u[n]) {

@@ -10,7 +10,7 @@ mod invariance;
 use continuation::codim2::{Curve, CurveError, FoldCurve};
 use continuation::samples::Cusp;
 use continuation::{
-    Branch, DenseProblem, Event, EventKind, Problem, Settings, StopReason, Tracer, Watch,
+    Branch, DenseProblem, Event, EventKind, Problem, Settings, Stability, StopReason, Tracer, Watch,
 };
 use std::ops::ControlFlow;
 
@@ -153,5 +153,32 @@ fn the_fold_curve_of_co_oxidation() {
                 assert!(event.error_estimate < 1e-8);
             }
         }
+    }
+}
+
+/// A shallow arch of rise `h` under the load `p`, in two modes: folds at `3b² = h² − 1`, where from
+/// `h² = 5.5` on the antisymmetric mode has become critical before. One cusp, at `h = 1`.
+#[test]
+fn no_cusp_where_another_mode_becomes_critical() {
+    let arch = DenseProblem::from_residual(2, &["load", "rise"], |u, p, r| {
+        let (b, a, h) = (u[0], u[1], p[1]);
+        let thrust = h * h - b * b - 4.0 * a * a;
+        r[0] = b - h - thrust * b + p[0];
+        r[1] = 16.0 * a - 4.0 * thrust * a;
+    })
+    .with_stability(Stability::EnergyHessian);
+    let branch = trace(&arch, "load", &[1.5, 0.0], &[0.0, 1.5], 3.0);
+    let fold = branch.events_of(&EventKind::Fold).next().unwrap();
+    for max_step in [None, Some(0.01), Some(0.1), Some(0.3), Some(5.0)] {
+        let curve = FoldCurve::at(&arch, &branch, fold, "rise").unwrap();
+        let found = follow(&curve, (0.5, 4.0), max_step, &[]);
+        println!("{max_step:?} {}", account(&found, "load"));
+        for point in &found.branch.points {
+            let (b, h) = (point.u[0], point.p);
+            assert!((3.0 * b * b - h * h + 1.0).abs() < 1e-7, "{max_step:?} {:?}", point.u);
+        }
+        let cusp = of_kind(&found, &EventKind::Cusp);
+        assert_eq!(cusp.len(), 1, "{max_step:?}");
+        assert!((cusp[0].p - 1.0).abs() < 1e-9);
     }
 }

@@ -6,7 +6,7 @@ use crate::case::CatalogueCase;
 use crate::closest::closest;
 use crate::run::{Observer, RunError, listen, settings};
 use continuation::{Branch, Problem, TraceError, Tracer};
-use problems::{Entry, ProblemError, Request, Setup, Visitor};
+use problems::{Entry, Request, Setup, Visitor};
 
 /// The value of a parameter in the case, and its plain name.
 pub(super) fn value(problem: &CatalogueCase, key: &str) -> Result<(f64, String), MapError> {
@@ -40,15 +40,33 @@ fn request(task: &Task<'_>, problem: &CatalogueCase, entry: &Entry, at: f64) -> 
     }
 }
 
+/// Why there is no base branch.
+enum Refused {
+    /// The problem holds that constant fixed; what it can vary besides the path's parameter.
+    Key(Vec<String>),
+    Trace(TraceError),
+}
+
+impl From<TraceError> for Refused {
+    fn from(error: TraceError) -> Self {
+        Refused::Trace(error)
+    }
+}
+
 struct Map<'t, 'o, 'm> {
     task: &'t Task<'t>,
     observer: &'o mut Observer<'m>,
 }
 
 impl Visitor for Map<'_, '_, '_> {
-    type Output = Result<(Branch, Vec<Found>, Vec<String>), TraceError>;
+    type Output = Result<(Branch, Vec<Found>, Vec<String>), Refused>;
 
     fn visit<P: Problem>(self, problem: &P, setup: Setup) -> Self::Output {
+        let known: Vec<&str> = problem.parameters().iter().map(|q| q.name).collect();
+        if !known.contains(&self.task.key.as_str()) {
+            let others = known.into_iter().filter(|name| *name != setup.parameter);
+            return Err(Refused::Key(others.map(str::to_string).collect()));
+        }
         let tracer = Tracer::new(problem, setup.parameter, &setup.u, &setup.p, setup.settings)?;
         let base = tracer.watching(&setup.watches)?.run(&mut listen(self.observer));
         let (found, refused) = curves(problem, &base, self.task, self.observer);
@@ -62,24 +80,29 @@ pub(super) fn attempt(
     problem: &CatalogueCase,
     at: f64,
     observer: &mut Observer<'_>,
-) -> Result<Attempt, RunError> {
+) -> Result<Attempt, MapError> {
     let case = &task.case.name;
     let entry = problems::find(&problem.name).ok_or_else(|| RunError::NotAvailable {
         case: case.clone(),
         problem: problem.name.clone(),
     })?;
     let wrong = |error| match error {
-        ProblemError::Trace(detail) => RunError::NoStart {
+        Refused::Key(allowed) => MapError::UnknownKey {
+            key: task.key.clone(),
+            problem: problem.name.clone(),
+            allowed,
+            suggestion: None,
+        },
+        Refused::Trace(detail) => MapError::Run(RunError::NoStart {
             case: case.clone(),
             start: task.case.path.start,
             detail,
             remedy: "choose another start or other parameters",
-        },
-        error => RunError::Problem { case: case.clone(), error },
+        }),
     };
     let outcome = entry.visit(&request(task, problem, entry, at), Map { task, observer });
-    let (base, found, refused) =
-        outcome.and_then(|inner| inner.map_err(ProblemError::Trace)).map_err(wrong)?;
+    let outcome = outcome.map_err(|error| RunError::Problem { case: case.clone(), error })?;
+    let (base, found, refused) = outcome.map_err(wrong)?;
     Ok(Attempt {
         parameter: base.parameter,
         stopped: base.stopped,

@@ -43,7 +43,7 @@ pub(super) fn attempt(
     contact: &ContactCase,
     at: f64,
     observer: &mut Observer<'_>,
-) -> Result<Attempt, RunError> {
+) -> Result<Attempt, MapError> {
     let mut contact = contact.clone();
     if let Some(value) = group(&mut contact.groups, &task.key) {
         *value = at;

@@ -38,6 +38,9 @@ pub(super) fn curves<P: Problem>(
     observer: &mut Observer<'_>,
 ) -> (Vec<Found>, Vec<String>) {
     let (mut found, mut refused) = (Vec::new(), Vec::new());
+    if base.stopped.reason == StopReason::Interrupted {
+        return (found, refused);
+    }
     for kind in KINDS {
         let mut known: Vec<Curve> = Vec::new();
         for event in base.events_of(&kind) {
@@ -52,7 +55,13 @@ pub(super) fn curves<P: Problem>(
                 // a branch point that does not persist is no curve
                 Ok(curve) if kind == EventKind::BranchPoint && !persists(&curve) => {}
                 Ok(curve) => {
-                    found.push(plain(problem, &kind, &curve, &base.parameter, task));
+                    found.push(plain(
+                        problem,
+                        &kind,
+                        &curve,
+                        &base.parameter,
+                        (task, bounds(base, event, &task.case.path)),
+                    ));
                     known.push(curve);
                 }
                 Err(error) => refused.push(format!(
@@ -89,10 +98,9 @@ fn trace<P: Problem>(
         max_points: path.max_points,
         ..Settings::default()
     };
-    // a special point beyond the path is followed without that bound
-    let (low, high) = (path.start.min(path.end), path.start.max(path.end));
-    let bounds = [low, high].into_iter().filter(|_| low < event.p && event.p < high);
-    let mut watches: Vec<Watch> = bounds.map(|at| Watch::stop_at(&base.parameter, at)).collect();
+    let bounds = bounds(base, event, path);
+    let stop = |at: &f64| Watch::stop_at(&base.parameter, *at);
+    let mut watches: Vec<Watch> = bounds.iter().map(stop).collect();
     // where the curve comes back to the base branch
     let position = problem.parameters().iter().position(|q| q.name == task.key);
     if let Some(value) = position.and_then(|k| base.parameters.get(k)) {
@@ -110,6 +118,18 @@ fn trace<P: Problem>(
     }
 }
 
+/// Bounds of the first parameter: those of the path; for a special point beyond them, where the
+/// branch went, with as much room again on either side.
+fn bounds(base: &Branch, event: &Event, path: &PathCase) -> [f64; 2] {
+    let (low, high) = (path.start.min(path.end), path.start.max(path.end));
+    if low < event.p && event.p < high {
+        return [low, high];
+    }
+    let values = base.points.iter().map(|point| point.p);
+    let (low, high) = values.fold((low, high), |(low, high), p| (low.min(p), high.max(p)));
+    [low - (high - low), high + (high - low)]
+}
+
 /// Longest step by default: short enough for curves that look smooth, and not so short that the
 /// range of the second parameter takes more than a hundred of them.
 fn smooth(base: &Branch, task: &Task<'_>) -> Option<f64> {
@@ -119,11 +139,10 @@ fn smooth(base: &Branch, task: &Task<'_>) -> Option<f64> {
 }
 
 /// Why a curve ends, said for the bound of the path too.
-fn end(stop: &Stop, first: Option<&f64>, parameter: &str, path: &PathCase) -> Stop {
-    let bounds = [path.start, path.end];
+fn end(stop: &Stop, first: Option<&f64>, parameter: &str, bounds: [f64; 2]) -> Stop {
     let near = |at: &f64| bounds.iter().any(|x| (x - at).abs() <= 1e-9 * (1.0 + x.abs()));
     if stop.reason == StopReason::Target && first.is_some_and(near) {
-        let detail = format!("{parameter} reached a bound of the path");
+        let detail = format!("{parameter} reached its bound");
         return Stop { reason: StopReason::Domain, detail };
     }
     stop.clone()
@@ -170,9 +189,9 @@ fn plain<P: Problem>(
     kind: &EventKind,
     curve: &Curve,
     parameter: &str,
-    task: &Task<'_>,
+    (task, bounds): (&Task<'_>, [f64; 2]),
 ) -> Found {
-    let (key, path) = (task.key.as_str(), &task.case.path);
+    let key = task.key.as_str();
     let branch = &curve.branch;
     let column = |name: &str| curve.column(name).unwrap_or_default();
     let (first, second) = (column(parameter), column(key));
@@ -212,8 +231,8 @@ fn plain<P: Problem>(
         points: points.collect(),
         table,
         second,
-        began: end(&curve.first_end, first.first(), parameter, path),
-        stopped: end(&branch.stopped, first.last(), parameter, path),
+        began: end(&curve.first_end, first.first(), parameter, bounds),
+        stopped: end(&branch.stopped, first.last(), parameter, bounds),
         first,
         newton_iterations: branch.statistics.newton_iterations,
     }

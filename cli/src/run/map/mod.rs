@@ -109,23 +109,21 @@ pub(crate) fn run_map(
     observer: &mut Observer<'_>,
 ) -> Result<MapResult, MapError> {
     let clock = Instant::now();
+    let not_available = || {
+        let (case, problem) = (case.name.clone(), "ring-load".to_string());
+        MapError::Run(RunError::NotAvailable { case, problem })
+    };
     let (value, key) = match &case.problem {
         ProblemCase::Contact(contact) => contact::value(contact, key)?,
         ProblemCase::Catalogue(problem) => catalogue::value(problem, key)?,
-        ProblemCase::RingLoad(_) => {
-            let problem = "ring-load".to_string();
-            return Err(RunError::NotAvailable { case: case.name.clone(), problem }.into());
-        }
+        ProblemCase::RingLoad(_) => return Err(not_available()),
     };
     let range = range::bounds(&key, value, case.map)?;
     let task = Task { case, key, value, range };
     let attempt = |at: f64, observer: &mut Observer<'_>| match &case.problem {
         ProblemCase::Contact(contact) => contact::attempt(&task, contact, at, observer),
         ProblemCase::Catalogue(problem) => catalogue::attempt(&task, problem, at, observer),
-        ProblemCase::RingLoad(_) => Err(RunError::NotAvailable {
-            case: case.name.clone(),
-            problem: "ring-load".to_string(),
-        }),
+        ProblemCase::RingLoad(_) => Err(not_available()),
     };
     let mut best = attempt(value, observer)?;
     let (mut at, mut spent) = (value, best.newton_iterations);
