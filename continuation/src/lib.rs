@@ -1,6 +1,7 @@
 #![doc = include_str!("../docs/tour.md")]
 
 pub mod branch;
+mod by_reference;
 pub mod codim2;
 pub mod deflation;
 mod dense_problem;

@@ -8,6 +8,7 @@
 //! 0.111565080074, fold 0.099574136736, Hopf 0.183834607986.
 
 use crate::ode::{Ode, System};
+use crate::visit::hand;
 use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::Parameter;
 
@@ -57,5 +58,5 @@ pub(crate) static ENTRY: Entry = Entry {
 };
 
 pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Output, ProblemError> {
-    Ok(visitor.visit(&Ode(Ab), Setup::new(ENTRY.parameter, vec![0.0; 2], request)))
+    Ok(hand(visitor, &Ode(Ab), Setup::new(ENTRY.parameter, vec![0.0; 2], request)))
 }

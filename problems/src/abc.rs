@@ -9,6 +9,7 @@
 //! origin: Hopf points 0.204184535701, 0.229839037648, 0.259957854245, 0.346208521607, not in this
 //! order along the branch.
 
+use crate::visit::hand;
 use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::{DenseProblem, ParamId};
 
@@ -46,5 +47,5 @@ pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Outp
         .observing("u", |x, _| x[0])
         .observing("v", |x, _| x[1])
         .observing("w", |x, _| x[2]);
-    Ok(visitor.visit(&problem, Setup::new(ENTRY.parameter, vec![0.0; 3], request)))
+    Ok(hand(visitor, &problem, Setup::new(ENTRY.parameter, vec![0.0; 3], request)))
 }

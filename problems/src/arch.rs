@@ -20,6 +20,7 @@
 //! thrust.
 
 use crate::grid::Grid;
+use crate::visit::hand;
 use crate::{Allowed, Constant, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
@@ -210,5 +211,5 @@ pub(crate) static ENTRY: Entry = Entry {
 pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Output, ProblemError> {
     let problem = ShallowArch::new(request.elements);
     let u = problem.unloaded(request.parameter(0));
-    Ok(visitor.visit(&problem, Setup::new(ENTRY.parameter, u, request)))
+    Ok(hand(visitor, &problem, Setup::new(ENTRY.parameter, u, request)))
 }

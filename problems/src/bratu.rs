@@ -3,6 +3,7 @@
 //! The branch leaves `λ = 0` upwards, turns at the fold and comes back at ever larger amplitude,
 //! without reaching 0; the trace ends at `max u = 8`.
 
+use crate::visit::hand;
 use crate::{Allowed, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::{Watch, samples::Bratu};
 
@@ -26,5 +27,5 @@ pub(crate) static ENTRY: Entry = Entry {
 pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Output, ProblemError> {
     let u = vec![0.0; request.elements];
     let setup = Setup::new(ENTRY.parameter, u, request).upwards();
-    Ok(visitor.visit(&Bratu::new(request.elements), setup.watching(Watch::stop_at("max_u", 8.0))))
+    Ok(hand(visitor, &Bratu::new(request.elements), setup.watching(Watch::stop_at("max_u", 8.0))))
 }

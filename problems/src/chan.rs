@@ -7,6 +7,7 @@
 //! `α = 0`: with 101 nodes, ends included, and `β = 0.01` a fold at `α = 4.041160429041`.
 
 use crate::grid::{Grid, diagonal};
+use crate::visit::hand;
 use crate::{Allowed, Constant, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability, Watch};
@@ -137,5 +138,5 @@ pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Outp
     let problem = Chan::new(request.elements);
     let u = vec![request.parameter(0); problem.dim()];
     let setup = Setup::new(ENTRY.parameter, u, request).upwards();
-    Ok(visitor.visit(&problem, setup.watching(Watch::stop_at("max_u", END))))
+    Ok(hand(visitor, &problem, setup.watching(Watch::stop_at("max_u", END))))
 }

@@ -13,6 +13,7 @@
 //! are two folds, at 1.0070588 and 1.0070794.
 
 use crate::ode::{Ode, System};
+use crate::visit::hand;
 use crate::{Allowed, Constant, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::{NewtonSettings, Parameter, newton};
 
@@ -87,5 +88,5 @@ pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Outp
         newton(&Ode(CoOxidation), &mut u, &p, &NewtonSettings::default())
             .map_err(|cause| ProblemError::Start { value: p[0], cause })?;
     }
-    Ok(visitor.visit(&Ode(CoOxidation), Setup::new(ENTRY.parameter, u.to_vec(), request)))
+    Ok(hand(visitor, &Ode(CoOxidation), Setup::new(ENTRY.parameter, u.to_vec(), request)))
 }

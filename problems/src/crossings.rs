@@ -1,6 +1,7 @@
 //! Two branches that cross, in one unknown: [`Transcritical`] and [`Pitchfork`].
 
 use crate::ode::{Ode, System};
+use crate::visit::hand;
 use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::Parameter;
 
@@ -46,7 +47,7 @@ pub(crate) fn transcritical<V: Visitor>(
     visitor: V,
 ) -> Result<V::Output, ProblemError> {
     let setup = Setup::new(TRANSCRITICAL.parameter, vec![request.start], request);
-    Ok(visitor.visit(&Ode(Transcritical), setup))
+    Ok(hand(visitor, &Ode(Transcritical), setup))
 }
 
 /// `dx/dt = −x³ − px`, from its side branch `x² = −p`.
@@ -93,5 +94,5 @@ pub(crate) fn pitchfork<V: Visitor>(
 ) -> Result<V::Output, ProblemError> {
     let x = (-request.start).sqrt();
     let setup = Setup::new(PITCHFORK.parameter, vec![x], request).upwards();
-    Ok(visitor.visit(&Ode(Pitchfork), setup))
+    Ok(hand(visitor, &Ode(Pitchfork), setup))
 }

@@ -3,6 +3,7 @@
 //! Folds at `μ = ±2(λ/3)^{3/2}`, which meet in a cusp at `μ = λ = 0`. The branch starts at the root
 //! of largest magnitude on the side of `μ`.
 
+use crate::visit::hand;
 use crate::{Allowed, Constant, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::{Watch, samples::Cusp};
 
@@ -33,5 +34,5 @@ pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Outp
         x -= (x * x * x - lambda * x - mu) / (3.0 * x * x - lambda);
     }
     let setup = Setup::new(ENTRY.parameter, vec![x], request).watching(Watch::zero("x"));
-    Ok(visitor.visit(&Cusp, setup))
+    Ok(hand(visitor, &Cusp, setup))
 }

@@ -10,6 +10,7 @@
 //! the one at 22.1816 is met at its vertical tangent, and AUTO labels it a fold.
 
 use crate::ode::{Ode, System};
+use crate::visit::hand;
 use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::Parameter;
 
@@ -59,5 +60,5 @@ pub(crate) static ENTRY: Entry = Entry {
 };
 
 pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Output, ProblemError> {
-    Ok(visitor.visit(&Ode(Enz), Setup::new(ENTRY.parameter, vec![0.0; 2], request)))
+    Ok(hand(visitor, &Ode(Enz), Setup::new(ENTRY.parameter, vec![0.0; 2], request)))
 }

@@ -17,6 +17,7 @@
 //! contact radius, unstable below. Either branch ends in the point contact `a = 0`; the traces end
 //! at a tenth of the fold's radius.
 
+use crate::visit::hand;
 use crate::{Allowed, Constant, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::{Dense, Matrix};
 use continuation::{EvalError, ParamId, Parameter, Problem, Stability, Watch};
@@ -294,7 +295,7 @@ pub(crate) fn load<V: Visitor>(request: &Request, visitor: V) -> Result<V::Outpu
     let u = vec![a, equilibrium(a, [e, r, w]).0];
     let setup = Setup::new(LOAD_ENTRY.parameter, u, request);
     let end = Watch::stop_at("contact_radius", 0.1 * fold);
-    Ok(visitor.visit(&LoadControl, setup.watching(end)))
+    Ok(hand(visitor, &LoadControl, setup.watching(end)))
 }
 
 pub(crate) fn grip<V: Visitor>(request: &Request, visitor: V) -> Result<V::Output, ProblemError> {
@@ -310,5 +311,5 @@ pub(crate) fn grip<V: Visitor>(request: &Request, visitor: V) -> Result<V::Outpu
     }
     let setup = Setup::new(GRIP_ENTRY.parameter, vec![a], request);
     let end = Watch::stop_at("contact_radius", 0.1 * fold);
-    Ok(visitor.visit(&GripControl, setup.watching(end)))
+    Ok(hand(visitor, &GripControl, setup.watching(end)))
 }

@@ -10,6 +10,7 @@
 //! double where `j ≠ k`, first `λ = 0.272435228668` (`(j, k) = (0, 1)`, `N → ∞`; 0.272557236618 for
 //! `N = 30`), simple where `j = k`, first 0.151974940576.
 
+use crate::visit::hand;
 use crate::{Allowed, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability, Watch};
@@ -184,5 +185,5 @@ pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Outp
         setup.settings.target = None;
         setup = setup.watching(Watch::stop_at("mean_u", constant(end, true)));
     }
-    Ok(visitor.visit(&problem, setup))
+    Ok(hand(visitor, &problem, setup))
 }

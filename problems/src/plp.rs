@@ -7,6 +7,7 @@
 //! `(110, 500)`: Hopf points 3.499953827987, 4.650457812603.
 
 use crate::ode::{Ode, System};
+use crate::visit::hand;
 use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::Parameter;
 
@@ -59,5 +60,5 @@ pub(crate) static ENTRY: Entry = Entry {
 };
 
 pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Output, ProblemError> {
-    Ok(visitor.visit(&Ode(Plp), Setup::new(ENTRY.parameter, vec![110.0, 500.0], request)))
+    Ok(hand(visitor, &Ode(Plp), Setup::new(ENTRY.parameter, vec![110.0, 500.0], request)))
 }

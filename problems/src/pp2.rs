@@ -7,6 +7,7 @@
 //! On the branch of prey alone, which leaves there: branch point 0.821904345374 (predators enter),
 //! fold 0.832929322234. On the branch with both: Hopf 0.671593847479.
 
+use crate::visit::hand;
 use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::DenseProblem;
 
@@ -43,5 +44,5 @@ pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Outp
     let problem = DenseProblem::from_residual(2, &["p"], rates)
         .observing("u", |x, _| x[0])
         .observing("v", |x, _| x[1]);
-    Ok(visitor.visit(&problem, Setup::new(ENTRY.parameter, vec![0.0; 2], request)))
+    Ok(hand(visitor, &problem, Setup::new(ENTRY.parameter, vec![0.0; 2], request)))
 }

@@ -21,6 +21,7 @@
 //! With `k_b = 1e-3`, `ν = 0.3`: `l = 4` at 1.0193240417, `l = 6` at 1.0544402803 times `4√k_b`, which
 //! the lowest one is to leading order. (`l = 5`, at 0.9685, is not symmetric about the equator.)
 
+use crate::visit::hand;
 use crate::{Allowed, Constant, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::{Dense, Matrix};
 use continuation::{EvalError, ParamId, Parameter, Problem, Stability};
@@ -323,5 +324,5 @@ pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Outp
     let mut setup = Setup::new(ENTRY.parameter, u, request);
     // Poisson's ratio is not among the problem's parameters
     setup.p.truncate(2);
-    Ok(visitor.visit(&problem, setup))
+    Ok(hand(visitor, &problem, setup))
 }

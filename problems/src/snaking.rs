@@ -14,6 +14,7 @@
 //! continued evenly. `W(1 + ∂²)²`, with the trapezoid weights `W`, is then symmetric; everything is
 //! multiplied by `W`.
 
+use crate::visit::hand;
 use crate::{Allowed, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability, Watch};
@@ -216,5 +217,5 @@ pub(crate) static ENTRY: Entry = Entry {
 pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Output, ProblemError> {
     let problem = Snaking::new(request.elements);
     let setup = Setup::new(ENTRY.parameter, problem.guess(request.start), request);
-    Ok(visitor.visit(&problem, setup.watching(Watch::stop_at("norm", FILLED))))
+    Ok(hand(visitor, &problem, setup.watching(Watch::stop_at("norm", FILLED))))
 }

@@ -16,6 +16,7 @@
 //! adds a negative eigenvalue that is no instability.
 
 use crate::grid::Grid;
+use crate::visit::hand;
 use crate::{Allowed, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
@@ -167,5 +168,5 @@ pub(crate) static ENTRY: Entry = Entry {
 pub(crate) fn visit<V: Visitor>(request: &Request, visitor: V) -> Result<V::Output, ProblemError> {
     let problem = SwiftHohenberg::new(request.elements);
     let setup = Setup::new(ENTRY.parameter, vec![0.0; problem.dim()], request);
-    Ok(visitor.visit(&problem, setup))
+    Ok(hand(visitor, &problem, setup))
 }

@@ -18,7 +18,7 @@
 //! ```
 
 use crate::{Entry, Id, ProblemError, Request};
-use continuation::{Branch, Problem, Progress, Settings, TraceError, Tracer, Watch};
+use continuation::{Branch, Matrix, Problem, Progress, Settings, TraceError, Tracer, Watch};
 use std::ops::ControlFlow;
 
 /// What is done with a problem of the catalogue.
@@ -27,6 +27,16 @@ pub trait Visitor {
     type Output;
     /// Does it; `setup` says where and how the problem's branch starts.
     fn visit<P: Problem>(self, problem: &P, setup: Setup) -> Self::Output;
+}
+
+/// Hands a problem over as one of its type of Jacobian, so that a visitor is compiled for each of
+/// these and not for each problem.
+pub(crate) fn hand<V: Visitor, J: Matrix>(
+    visitor: V,
+    problem: &dyn Problem<Jacobian = J>,
+    setup: Setup,
+) -> V::Output {
+    visitor.visit(&problem, setup)
 }
 
 /// Where and how the branch of a problem starts.
