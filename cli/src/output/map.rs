@@ -3,7 +3,7 @@
 
 use super::number::rounded;
 use super::result::Table;
-use super::summary::aligned;
+use super::summary::{aligned, count};
 use continuation::{Stop, StopReason};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::fmt::Write as _;
@@ -226,8 +226,8 @@ pub(crate) fn map_summary(result: &MapResult, folder: Option<&Path>) -> String {
     let (newton, seconds) = (result.newton_iterations, result.seconds);
     let _ = writeln!(
         out,
-        "; {} curves, {points} points, {newton} Newton iterations, {seconds:.2} s",
-        result.curves.len()
+        "; {}, {points} points, {newton} Newton iterations, {seconds:.2} s",
+        count(result.curves.len(), "curve", "curves")
     );
     if let Some(folder) = folder {
         let _ = writeln!(out, "written to {}", folder.display());

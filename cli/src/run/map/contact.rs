@@ -5,7 +5,7 @@ use super::{Attempt, MapError, Task};
 use crate::case::{ContactCase, Groups};
 use crate::closest::closest;
 use crate::run::contact::{no_start, problem};
-use crate::run::{Observer, RunError, listen, settings};
+use crate::run::{Observer, listen, settings};
 use shell_contact::trace_contact;
 
 /// The groups that are parameters of the problem, in the order in which case files have them.

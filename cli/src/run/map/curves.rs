@@ -60,7 +60,7 @@ pub(super) fn curves<P: Problem>(
                         &kind,
                         &curve,
                         &base.parameter,
-                        (task, bounds(base, event, &task.case.path)),
+                        (task, bounds(base, &task.case.path)),
                     ));
                     known.push(curve);
                 }
@@ -98,7 +98,7 @@ fn trace<P: Problem>(
         max_points: path.max_points,
         ..Settings::default()
     };
-    let bounds = bounds(base, event, path);
+    let bounds = bounds(base, path);
     let stop = |at: &f64| Watch::stop_at(&base.parameter, *at);
     let mut watches: Vec<Watch> = bounds.iter().map(stop).collect();
     // where the curve comes back to the base branch
@@ -118,11 +118,15 @@ fn trace<P: Problem>(
     }
 }
 
-/// Bounds of the first parameter: those of the path; for a special point beyond them, where the
-/// branch went, with as much room again on either side.
-fn bounds(base: &Branch, event: &Event, path: &PathCase) -> [f64; 2] {
+/// Bounds of the first parameter, the same for all curves: those of the path; where a special
+/// point lies beyond them, where the branch went, with as much room again on either side.
+fn bounds(base: &Branch, path: &PathCase) -> [f64; 2] {
     let (low, high) = (path.start.min(path.end), path.start.max(path.end));
-    if low < event.p && event.p < high {
+    let special = |event: &&Event| {
+        matches!(event.kind, EventKind::Fold | EventKind::Hopf | EventKind::BranchPoint)
+    };
+    let mut special = base.events.iter().filter(special);
+    if special.all(|event| low < event.p && event.p < high) {
         return [low, high];
     }
     let values = base.points.iter().map(|point| point.p);
