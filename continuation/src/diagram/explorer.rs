@@ -7,7 +7,7 @@ use super::{
     Diagram, DiagramBranch, DiagramError, DiagramProgress, DiagramStop, Origin, Unfinished,
 };
 use crate::branch::{Branch, EventKind, Statistics, Stop, StopReason};
-use crate::deflation::{OffBranch, disconnected};
+use crate::deflation::{DeflationReport, OffBranch, disconnected_observed};
 use crate::events::Watch;
 use crate::near::{NearBifurcation, near_bifurcations};
 use crate::problem::Problem;
@@ -155,19 +155,24 @@ impl<'a, P: Problem> Explorer<'a, P> {
             return Ok(None);
         }
         let (task, branch) = loop {
+            let branches = self.branches.len();
             let next = match self.pop() {
-                None => self.search(),
+                None => self.search(&mut |p| {
+                    let at = Progress { points: 0, events: 0, p, s: 0.0 };
+                    let (origin, part) = (Origin::Start, None);
+                    observer(&DiagramProgress { branches, waiting: 0, at, origin, part })
+                }),
                 some => some,
             };
             let Some(task) = next else {
-                self.stopped = Some(DiagramStop::Complete);
+                self.stopped = self.stopped.or(Some(DiagramStop::Complete));
                 return Ok(None);
             };
             if self.branches.len() >= self.settings.max_branches {
                 self.stopped = Some(DiagramStop::MaxBranches);
                 return Ok(None);
             }
-            let (branches, waiting) = (self.branches.len(), self.waiting());
+            let waiting = self.waiting();
             let origin = self.origin(&task);
             let unfinished = self.unfinished.take().filter(|one| one.origin == origin);
             let traced = self.trace(&task, unfinished, &mut |at, part| {
@@ -251,8 +256,9 @@ impl<'a, P: Problem> Explorer<'a, P> {
     }
 
     /// A solution beside the next near-bifurcation that is on no known branch. Beside each the
-    /// search goes on until there is no further one.
-    fn search(&mut self) -> Option<Task> {
+    /// search goes on until there is no further one. `observer` is told where it searches, and may
+    /// stop it.
+    fn search(&mut self, observer: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Option<Task> {
         let search = self.settings.search.clone()?;
         let known: Vec<Branch> = self.branches.iter().map(|one| one.branch.clone()).collect();
         loop {
@@ -263,7 +269,18 @@ impl<'a, P: Problem> Explorer<'a, P> {
                 continue;
             }
             let beside = std::slice::from_ref(&one.near[near]);
-            let found = disconnected(self.problem, &known, beside, &[], &search.deflation);
+            let (mut stopped, p) = (false, beside[0].p);
+            let mut hear = |_: &DeflationReport| {
+                let wish = observer(p);
+                stopped |= wish.is_break();
+                wish
+            };
+            let (problem, settings) = (self.problem, &search.deflation);
+            let found = disconnected_observed(problem, &known, beside, &[], settings, &mut hear);
+            if stopped {
+                self.stopped = Some(DiagramStop::Interrupted);
+                return None;
+            }
             let which = self.problem.parameters().iter().position(|q| q.name == self.parameter)?;
             let inside = |p: f64| self.domain.is_none_or(|(lo, hi)| (lo..=hi).contains(&p));
             let first = found.unwrap_or_default().into_iter().find(|off| inside(off.p[which]));

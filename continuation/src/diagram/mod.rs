@@ -175,7 +175,8 @@ pub struct DiagramProgress<'p> {
     pub branches: usize,
     /// Rays that wait to be followed.
     pub waiting: usize,
-    /// Where the branch that is traced at the moment stands.
+    /// Where the branch that is traced at the moment stands; without points while disconnected
+    /// branches are sought, `p` being where.
     pub at: Progress,
     origin: Origin,
     part: Option<&'p dyn Fn() -> Part>,

@@ -420,6 +420,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
     ) -> Result<(), Refusal> {
         let (events_before, queue_before) = (self.events.len(), self.queue.len());
         let running = self.running_unstable;
+        self.recount(special);
         for (i, found) in special.iter().enumerate() {
             let last = i + 1 == special.len();
             if let Err(refusal) = self.record(h, found, s_trial, last) {

@@ -209,6 +209,31 @@ impl<P: Problem> Tracer<'_, P> {
         }
     }
 
+    /// Where the count of unstable modes is not certain it comes from the few eigenvalues nearest
+    /// to zero: no fewer are unstable, but one that has gone far is not among them. What has
+    /// changed since the last point passed zero, and is among them at both ends.
+    pub(super) fn recount(&mut self, special: &[Special]) {
+        let Self { current: a, trial: b, .. } = self;
+        if b.certified || self.core.problem.special_points().is_some() {
+            return;
+        }
+        let known = (self.running_unstable, a.count, b.count, b.unstable);
+        let (Some(running), Some(before), Some(after), Some(least)) = known else { return };
+        let critical = special.iter().map(|one| match one.candidate {
+            Candidate::Fold => 1,
+            Candidate::BranchPoint { kernel } => kernel,
+            Candidate::Hopf => 2,
+            _ => 0,
+        });
+        let most = critical.sum::<usize>();
+        let changed = if after >= before {
+            running + (after - before).min(most)
+        } else {
+            running.saturating_sub((before - after).min(most))
+        };
+        b.unstable = Some(changed.max(least));
+    }
+
     /// What a candidate is called; `None` for a point that is no event.
     fn kind(&self, candidate: &Candidate) -> Option<EventKind> {
         if let Some(curve) = self.core.problem.special_points() {
