@@ -19,6 +19,9 @@ pub(super) struct Axis {
     pub(super) title: String,
 }
 
+/// Data that are nowhere larger than this are what rounding leaves of zero.
+const NOTHING: f64 = 1e-25;
+
 impl Axis {
     /// An axis that shows all of `values`, with some room at both ends, and about `count` ticks.
     pub(super) fn of(title: &str, values: impl Iterator<Item = f64>, count: usize) -> Self {
@@ -27,13 +30,13 @@ impl Axis {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         let (low, high) = if low > high { (0.0, 1.0) } else { (low, high) };
         let size = low.abs().max(high.abs());
-        let (low, high) = if high - low > 1e-9 * size && high - low > 1e-290 {
+        let (low, high) = if size < NOTHING {
+            (-1.0, 1.0)
+        } else if high - low > 1e-9 * size {
             let room = 0.04 * (high - low);
             (low - room, high + room)
-        } else if size > 1e-280 {
-            (low - 0.1 * size, high + 0.1 * size)
         } else {
-            (-1.0, 1.0)
+            (low - 0.1 * size, high + 0.1 * size)
         };
         Self::exactly(title, low, high, count)
     }
@@ -98,6 +101,14 @@ mod tests {
     fn labels(values: &[f64]) -> Vec<String> {
         let axis = Axis::of("x", values.iter().copied(), 6);
         axis.ticks.iter().map(|tick| axis.label(*tick)).collect()
+    }
+
+    #[test]
+    fn what_rounding_leaves_of_zero_is_flat() {
+        let axis = Axis::of("norm", [0.0, 2.2e-31, 0.0].into_iter(), 7);
+        assert_eq!((axis.low, axis.high, axis.unit), (-1.0, 1.0, 1.0));
+        let small = Axis::of("energy", [0.0, 2.2e-21].into_iter(), 7);
+        assert!(small.unit < 1e-20);
     }
 
     #[test]

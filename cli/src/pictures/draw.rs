@@ -51,11 +51,8 @@ pub(super) fn branches(
         let drawn = here.flat_map(|(_, curve)| curve_lines(curve, color, (x.unit, y.unit)));
         lines.splice(0..0, drawn);
         if deepest > 0 {
-            let label = match level {
-                0 => "first branch".to_owned(),
-                1 => "after one branch point".to_owned(),
-                n => format!("after {n} branch points"),
-            };
+            let label =
+                if level == 0 { "first branch".to_owned() } else { format!("depth {level}") };
             entries.push(Entry::Line { color, dashed: false, label });
         }
     }

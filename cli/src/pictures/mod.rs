@@ -33,18 +33,15 @@ pub(crate) const NAMES: [&str; 6] = [
 /// Name of the picture of a whole diagram.
 pub(crate) const DIAGRAM: &str = "diagram.svg";
 
-/// All branches of a diagram as SVG; `None` where nothing can be drawn.
+/// All branches of a diagram as SVG.
 ///
 /// # Errors
 /// When the drawing library fails.
-pub(crate) fn draw_diagram(result: &DiagramResult) -> Result<Option<Vec<u8>>, DrawError> {
+pub(crate) fn draw_diagram(result: &DiagramResult) -> Result<String, DrawError> {
     let curves: Vec<(usize, &Curve)> =
         result.branches.iter().map(|branch| (branch.depth, &branch.curve)).collect();
-    if curves.iter().all(|(_, curve)| curve.y.iter().all(|y| !y.is_finite())) {
-        return Ok(None);
-    }
     let (x, y) = &result.axes;
-    draw::branches(&result.case, x, y, &curves).map(|svg| Some(svg.into_bytes()))
+    draw::branches(&result.case, x, y, &curves)
 }
 
 /// All pictures for which there are data: file name and SVG.
