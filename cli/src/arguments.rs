@@ -76,18 +76,9 @@ pub(crate) struct TraceArguments {
     /// Which case.
     #[command(flatten)]
     pub(crate) case: CaseArguments,
-    /// Folder for the results, made if missing [default: ./arclen-out/CASE]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// Print events.json on standard output; without --out, write no files
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Draw no pictures
-    #[arg(long)]
-    pub(crate) no_pictures: bool,
-    /// No progress, no summary, no notes
-    #[arg(long, short)]
-    pub(crate) quiet: bool,
+    /// What to do with the results.
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
 }
 
 /// Which case, and what to do with its diagram.
@@ -99,24 +90,13 @@ pub(crate) struct DiagramArguments {
     /// Most branch points between a branch and the first one, as --set diagram.depth=N
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) depth: Option<String>,
-    /// Folder for the results, made if missing [default: ./arclen-out/CASE]
-    ///
-    /// While a diagram is explored its state is kept in DIR/unfinished; the same command goes on
-    /// from it.
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// Begin anew, even if the folder holds an unfinished diagram
+    /// Begin anew, even if the folder holds an unfinished diagram: the same command otherwise goes
+    /// on from what is kept in DIR/unfinished
     #[arg(long)]
     pub(crate) restart: bool,
-    /// Print diagram.json on standard output; without --out, write no files
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Draw no pictures
-    #[arg(long)]
-    pub(crate) no_pictures: bool,
-    /// No progress, no summary, no notes
-    #[arg(long, short)]
-    pub(crate) quiet: bool,
+    /// What to do with the results.
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
 }
 
 impl DiagramArguments {
@@ -138,13 +118,21 @@ pub(crate) struct MapArguments {
     /// [default: a tenth to ten times the case's value]
     #[arg(long, value_name = "KEY")]
     pub(crate) over: String,
+    /// What to do with the results.
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
+}
+
+/// What to do with the results.
+#[derive(Debug, Args)]
+pub(crate) struct OutputArguments {
     /// Folder for the results, made if missing [default: ./arclen-out/CASE]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Print map.json on standard output; without --out, write no files
+    /// Print the JSON on standard output; without --out, write no files
     #[arg(long)]
     pub(crate) json: bool,
-    /// Draw no picture
+    /// Draw no pictures
     #[arg(long)]
     pub(crate) no_pictures: bool,
     /// No progress, no summary, no notes

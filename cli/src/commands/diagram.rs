@@ -1,5 +1,6 @@
 //! `arclen diagram`: a branch and all that leave it.
 
+use super::delivery::Made;
 use super::progress::Observer;
 use crate::arguments::DiagramArguments;
 use crate::case::ResolvedCase;
@@ -8,8 +9,7 @@ use crate::output::{Checkpoint, DiagramResult, Folder, branch_csv, diagram_json,
 use crate::run::{Keep, Saved, run_diagram};
 use crate::{pictures, terminal};
 use continuation::diagram::{DiagramBranch, Unfinished};
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const DIAGRAM: &str = "diagram.json";
 const CASE: &str = "case.toml";
@@ -17,7 +17,7 @@ const CASE: &str = "case.toml";
 /// Explore the diagram of a case.
 pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
     let overrides = arguments.overrides();
-    let case = match super::loaded(&arguments.case, &overrides, arguments.quiet) {
+    let case = match super::loaded(&arguments.case, &overrides, arguments.output.quiet) {
         Ok(loaded) => loaded.case,
         Err(exit) => return exit,
     };
@@ -25,19 +25,14 @@ pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
         terminal::error(error);
         Exit::BadInput
     };
-    let place = match (&arguments.out, arguments.json) {
-        (Some(path), _) => Some(path.clone()),
-        (None, true) => None,
-        (None, false) => Some(Path::new(".").join("arclen-out").join(&case.name)),
-    };
     let names = [DIAGRAM, CASE, pictures::DIAGRAM];
-    let folder = match place.as_deref().map(|path| Folder::check(path, &names)).transpose() {
+    let folder = match arguments.output.folder(&case.name, &names) {
         Ok(folder) => folder,
-        Err(error) => return refuse(&error),
+        Err(exit) => return exit,
     };
     let text = case.to_toml();
-    let checkpoint = place.as_deref().map(|path| Checkpoint::check(path, &text)).transpose();
-    let mut checkpoint = match checkpoint {
+    let checkpoint = folder.as_ref().map(|folder| Checkpoint::check(folder.path(), &text));
+    let mut checkpoint = match checkpoint.transpose() {
         Ok(checkpoint) => checkpoint,
         Err(error) => return refuse(&error),
     };
@@ -49,7 +44,7 @@ pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
         _ => Saved::default(),
     };
     let resumed = saved != Saved::default();
-    if resumed && !arguments.quiet {
+    if resumed && !arguments.output.quiet {
         let n = saved.finished.len();
         let part = saved.unfinished.as_ref().map_or(0, |part| part.points().len());
         let note = format!(
@@ -57,7 +52,7 @@ pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
         );
         terminal::err(&note);
     }
-    let observer = Observer::new(None, arguments.quiet);
+    let observer = Observer::new(None, arguments.output.quiet);
     let mut nowhere = Nowhere;
     let mut lazy = checkpoint.as_mut().map(|checkpoint| Lazy { checkpoint, resumed, begun: false });
     let keep: &mut dyn Keep = match &mut lazy {
@@ -140,71 +135,21 @@ fn deliver(
     result: &DiagramResult,
     folder: Option<&Folder>,
 ) -> Exit {
-    let mut failed = false;
-    let mut complain = |error: &dyn std::fmt::Display| {
-        terminal::error(error);
-        failed = true;
-    };
-    let json = match diagram_json(result) {
-        Ok(json) => json,
-        Err(error) => {
-            complain(&error);
-            String::new()
-        }
-    };
-    let mut written = None;
-    if let Some(folder) = folder {
-        let mut files = Vec::new();
+    let mut made = Made::json(DIAGRAM, diagram_json(result));
+    if folder.is_some() {
+        made.file(CASE, case.to_toml());
         for branch in &result.branches {
-            match branch_csv(&branch.trace.table) {
-                Ok(table) => files.push((branch.csv(), table)),
-                Err(error) => complain(&error),
-            }
+            made.attempt(branch.csv(), branch_csv(&branch.trace.table));
         }
-        files.push((DIAGRAM.to_owned(), json.clone().into_bytes()));
-        files.push((CASE.to_owned(), case.to_toml().into_bytes()));
-        if !arguments.no_pictures {
-            match pictures::draw_diagram(result) {
-                Ok(Some(drawn)) => files.push((pictures::DIAGRAM.to_owned(), drawn)),
-                Ok(None) => {}
-                Err(error) => complain(&error),
-            }
-        }
-        match folder.write(&files) {
-            Ok(()) => {
-                written = Some(folder.path());
-                remove_others(folder.path(), result.branches.len());
-            }
-            Err(error) => complain(&error),
+        if !arguments.output.no_pictures && result.has_curves() {
+            made.attempt(pictures::DIAGRAM, pictures::draw_diagram(result));
         }
     }
-    let mut printed = Exit::Done;
-    if arguments.json {
-        printed = super::print(&json);
+    let complete = result.is_complete();
+    let summary = |written: Option<&Path>| diagram_summary(result, written);
+    let exit = arguments.output.deliver(folder, made, summary, complete);
+    if let Some(folder) = folder.filter(|_| exit != Exit::NotWritten) {
+        folder.remove_numbered("branch", result.branches.len());
     }
-    if !arguments.quiet {
-        let summary = diagram_summary(result, written);
-        if arguments.json {
-            terminal::err(&summary);
-        } else {
-            printed = super::print(&summary);
-        }
-    }
-    if failed || printed != Exit::Done {
-        Exit::NotWritten
-    } else if result.is_complete() {
-        Exit::Done
-    } else {
-        Exit::StoppedEarly
-    }
-}
-
-/// Removes the branches of an earlier diagram that had more of them.
-fn remove_others(folder: &Path, branches: usize) {
-    let path = |k: usize| -> PathBuf { folder.join(format!("branch-{k}.csv")) };
-    for file in (branches..).map(path).take_while(|file| file.is_file()) {
-        if fs::remove_file(file).is_err() {
-            return;
-        }
-    }
+    exit
 }

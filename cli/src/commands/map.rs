@@ -1,5 +1,6 @@
 //! `arclen map`: curves of special points in two parameters.
 
+use super::delivery::Made;
 use super::progress::Observer;
 use crate::arguments::MapArguments;
 use crate::case::ResolvedCase;
@@ -8,22 +9,22 @@ use crate::output::{Folder, MapResult, branch_csv, map_json, map_summary};
 use crate::pictures;
 use crate::run::run_map;
 use crate::terminal;
-use std::path::{Path, PathBuf};
 
 const MAP: &str = "map.json";
 const CASE: &str = "case.toml";
 
 /// Map a case.
 pub(super) fn map(arguments: &MapArguments) -> Exit {
-    let case = match super::loaded(&arguments.case, &arguments.case.overrides(), arguments.quiet) {
-        Ok(loaded) => loaded.case,
-        Err(exit) => return exit,
-    };
-    let folder = match folder(arguments, &case.name) {
+    let case =
+        match super::loaded(&arguments.case, &arguments.case.overrides(), arguments.output.quiet) {
+            Ok(loaded) => loaded.case,
+            Err(exit) => return exit,
+        };
+    let folder = match arguments.output.folder(&case.name, &[MAP, CASE, pictures::MAP]) {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
-    let mut observer = Observer::new(Some(case.path), arguments.quiet);
+    let mut observer = Observer::new(Some(case.path), arguments.output.quiet);
     let outcome = run_map(&case, &arguments.over, &mut |progress| observer.hear(progress));
     observer.finish();
     match outcome {
@@ -35,19 +36,6 @@ pub(super) fn map(arguments: &MapArguments) -> Exit {
     }
 }
 
-/// The output folder, checked before the work starts; `None` when no files are wanted.
-fn folder(arguments: &MapArguments, case: &str) -> Result<Option<Folder>, Exit> {
-    let path: PathBuf = match &arguments.out {
-        Some(path) => path.clone(),
-        None if arguments.json => return Ok(None),
-        None => Path::new(".").join("arclen-out").join(case),
-    };
-    Folder::check(&path, &[MAP, CASE, pictures::MAP]).map(Some).map_err(|error| {
-        terminal::error(&error);
-        Exit::BadInput
-    })
-}
-
 /// Write files, JSON and summary.
 fn deliver(
     arguments: &MapArguments,
@@ -55,55 +43,24 @@ fn deliver(
     result: &MapResult,
     folder: Option<&Folder>,
 ) -> Exit {
-    let mut failed = false;
-    let mut complain = |error: &dyn std::fmt::Display| {
-        terminal::error(error);
-        failed = true;
-    };
-    let json = map_json(result).unwrap_or_else(|error| {
-        complain(&error);
-        String::new()
-    });
-    let mut written = None;
-    if let Some(folder) = folder {
-        let mut files = vec![
-            (MAP.to_string(), json.clone().into_bytes()),
-            (CASE.to_string(), case.to_toml().into_bytes()),
-        ];
+    let mut made = Made::json(MAP, map_json(result));
+    if folder.is_some() {
+        made.file(CASE, case.to_toml());
         for curve in &result.curves {
-            match branch_csv(&curve.table) {
-                Ok(table) => files.push((curve.csv.clone(), table)),
-                Err(error) => complain(&error),
-            }
+            made.attempt(curve.csv.clone(), branch_csv(&curve.table));
         }
-        if !arguments.no_pictures && !result.curves.is_empty() {
-            match pictures::draw_map(result) {
-                Ok(svg) => files.push((pictures::MAP.to_string(), svg.into_bytes())),
-                Err(error) => complain(&error),
-            }
-        }
-        match folder.write(&files) {
-            Ok(()) => written = Some(folder.path()),
-            Err(error) => complain(&error),
+        if !arguments.output.no_pictures && !result.curves.is_empty() {
+            made.attempt(pictures::MAP, pictures::draw_map(result));
         }
     }
-    let mut printed = Exit::Done;
-    if arguments.json {
-        printed = super::print(&json);
-    }
-    if !arguments.quiet {
-        let summary = map_summary(result, written);
-        if arguments.json {
-            terminal::err(&summary);
-        } else {
-            printed = super::print(&summary);
+    let complete = result.stopped_because.is_complete();
+    let exit =
+        arguments.output.deliver(folder, made, |written| map_summary(result, written), complete);
+    if let Some(folder) = folder.filter(|_| exit != Exit::NotWritten) {
+        for kind in ["fold", "hopf", "branch-point"] {
+            let curves = result.curves.iter().filter(|curve| curve.kind == kind);
+            folder.remove_numbered(kind, curves.count());
         }
     }
-    if failed || printed != Exit::Done {
-        Exit::NotWritten
-    } else if result.stopped_because.is_complete() {
-        Exit::Done
-    } else {
-        Exit::StoppedEarly
-    }
+    exit
 }

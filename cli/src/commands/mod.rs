@@ -2,6 +2,7 @@
 
 mod check;
 mod completions;
+mod delivery;
 mod diagram;
 mod list;
 mod map;

@@ -119,6 +119,12 @@ impl DiagramResult {
         self.stopped_because == "complete"
     }
 
+    /// Whether there is anything to draw.
+    pub(crate) fn has_curves(&self) -> bool {
+        let mut values = self.branches.iter().flat_map(|one| &one.curve.y);
+        values.any(|y| y.is_finite())
+    }
+
     fn points(&self) -> usize {
         self.branches.iter().map(|one| one.trace.points).sum()
     }

@@ -108,6 +108,16 @@ impl Folder {
         Ok(())
     }
 
+    /// Removes the tables `NAME-K.csv` with `K` from `first` on: those of an earlier run that had more
+    /// of them. One that cannot be removed stays.
+    pub(crate) fn remove_numbered(&self, name: &str, first: usize) {
+        for k in first.. {
+            if fs::remove_file(self.path.join(format!("{name}-{k}.csv"))).is_err() {
+                return;
+            }
+        }
+    }
+
     fn temporary(&self, bytes: &[u8]) -> io::Result<NamedTempFile> {
         let mut builder = Builder::new();
         builder.prefix(".arclen-");

@@ -1,0 +1,113 @@
+//! How results leave a command: files, JSON on standard output, a summary, an exit code.
+
+use crate::arguments::OutputArguments;
+use crate::exit::Exit;
+use crate::output::Folder;
+use crate::terminal;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+impl OutputArguments {
+    /// The output folder; `None` when no files are wanted.
+    pub(super) fn place(&self, case: &str) -> Option<PathBuf> {
+        match &self.out {
+            Some(path) => Some(path.clone()),
+            None if self.json => None,
+            None => Some(Path::new(".").join("arclen-out").join(case)),
+        }
+    }
+
+    /// The output folder for these files, checked before the work starts.
+    pub(super) fn folder(&self, case: &str, names: &[&str]) -> Result<Option<Folder>, Exit> {
+        let place = self.place(case);
+        place.map(|path| Folder::check(&path, names)).transpose().map_err(|error| {
+            terminal::error(&error);
+            Exit::BadInput
+        })
+    }
+
+    /// Writes files, JSON and summary; what cannot be made is said and left out. `summary` is told
+    /// where the files went, if they went anywhere; `complete` says whether all was computed.
+    pub(super) fn deliver(
+        &self,
+        folder: Option<&Folder>,
+        mut made: Made,
+        summary: impl FnOnce(Option<&Path>) -> String,
+        complete: bool,
+    ) -> Exit {
+        let mut written = None;
+        if let Some(folder) = folder {
+            written = made.take(folder.write(&made.files)).map(|()| folder.path());
+        }
+        let mut printed = Exit::Done;
+        if self.json {
+            printed = super::print(&made.json);
+        }
+        if !self.quiet {
+            let summary = summary(written);
+            if self.json {
+                terminal::err(&summary);
+            } else {
+                printed = super::print(&summary);
+            }
+        }
+        if made.failed || printed != Exit::Done {
+            Exit::NotWritten
+        } else if complete {
+            Exit::Done
+        } else {
+            Exit::StoppedEarly
+        }
+    }
+}
+
+/// What a command has made for its user.
+#[derive(Debug, Default)]
+pub(super) struct Made {
+    json: String,
+    files: Vec<(String, Vec<u8>)>,
+    failed: bool,
+}
+
+impl Made {
+    /// The JSON, which is also the file `name`.
+    pub(super) fn json<E: Display>(name: &str, json: Result<String, E>) -> Self {
+        let mut made = Made::default();
+        made.json = made.take(json).unwrap_or_default();
+        let text = made.json.clone();
+        made.file(name, text);
+        made
+    }
+
+    /// A file.
+    pub(super) fn file(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) {
+        self.files.push((name.into(), bytes.into()));
+    }
+
+    /// A file that could perhaps not be made.
+    pub(super) fn attempt<E: Display>(
+        &mut self,
+        name: impl Into<String>,
+        bytes: Result<impl Into<Vec<u8>>, E>,
+    ) {
+        if let Some(bytes) = self.take(bytes) {
+            self.file(name, bytes);
+        }
+    }
+
+    /// Several files.
+    pub(super) fn files<E: Display>(&mut self, files: Result<Vec<(String, Vec<u8>)>, E>) {
+        if let Some(files) = self.take(files) {
+            self.files.extend(files);
+        }
+    }
+
+    /// What was made; an error is said.
+    fn take<T, E: Display>(&mut self, made: Result<T, E>) -> Option<T> {
+        made.map_err(|error| {
+            terminal::error(&error);
+            self.failed = true;
+        })
+        .ok()
+    }
+}
