@@ -124,7 +124,7 @@ impl Problem for Chebyshev {
 fn twelve_roots_of_a_polynomial_in_any_unit() {
     let root = |k: usize| ((2 * k + 1) as f64 * std::f64::consts::PI / 24.0).cos();
     for (a, b, c) in SCALES.into_iter().chain([(1.0, 1.0, 1.0)]) {
-        let problem = Scaled::new(Chebyshev::new(), a, b, c);
+        let problem = Scaled::new(Chebyshev::new(), a, b, &[c]);
         let known = [vec![b * root(0)]];
         let found = search(&problem, &[0.0], &known);
         let all = firsts(&known, &found);
@@ -179,7 +179,7 @@ fn bratu_has_two_solutions() {
 #[test]
 fn bratu_in_any_unit() {
     for (a, b, c) in SCALES {
-        let problem = Scaled::new(Bratu::new(40), a, b, c);
+        let problem = Scaled::new(Bratu::new(40), a, b, &[c]);
         let mut lower = vec![0.0; 40];
         newton(&problem, &mut lower, &[3.0 * c], &NewtonSettings::default()).unwrap();
         let found = search(&problem, &[3.0 * c], &[lower]);

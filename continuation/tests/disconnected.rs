@@ -55,7 +55,7 @@ fn the_other_branch_of_an_imperfect_pitchfork_in_any_unit() {
             let inner = DenseProblem::from_residual(1, &["p"], move |x, p, r| {
                 r[0] = p[0] * x[0] - x[0].powi(3) + e;
             });
-            let problem = Scaled::new(inner, a, b, c);
+            let problem = Scaled::new(inner, a, b, &[c]);
             let branches = explore(&problem, &[0.0], &[-c], &within(-c, c), &[]);
             assert_eq!(branches.len(), 2, "{e:e} {a:e} {b:e} {c:e}");
             let fold = folds(&branches[1]);

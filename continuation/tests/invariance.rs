@@ -28,7 +28,7 @@ fn account(branch: &Branch, c: f64) -> Vec<(String, f64)> {
 
 fn compare<P: Problem>(make: impl Fn() -> P, u: &[f64], p: f64, target: f64, sides: bool) {
     let trace = |(a, b, c): (f64, f64, f64)| {
-        let problem = Scaled::new(make(), a, b, c);
+        let problem = Scaled::new(make(), a, b, &[c]);
         let u: Vec<f64> = u.iter().map(|x| x * b).collect();
         let name = problem.parameters()[0].name;
         let settings = Settings { target: Some(target * c), ..Settings::default() };

@@ -155,7 +155,7 @@ fn units_do_not_matter() {
         })
     };
     let gap = |(a, b, c): (f64, f64, f64)| {
-        let problem = Scaled::new(make(), a, b, c);
+        let problem = Scaled::new(make(), a, b, &[c]);
         let settings = Settings { target: Some(c), ..Settings::default() };
         let branch = trace(&problem, &[0.0, -0.2 * b], &[-c], settings);
         let near = near(&problem, &branch);

@@ -94,6 +94,19 @@ pub fn disconnected_observed<P: Problem>(
     settings: &DeflationSettings,
     observer: &mut dyn FnMut(&DeflationReport) -> ControlFlow<()>,
 ) -> Result<Vec<OffBranch>, DeflationError> {
+    let branches: Vec<&Branch> = branches.iter().collect();
+    off_branches(problem, &branches, near, values, settings, observer)
+}
+
+/// [`disconnected_observed`], of branches that lie anywhere.
+pub(crate) fn off_branches<P: Problem>(
+    problem: &P,
+    branches: &[&Branch],
+    near: &[NearBifurcation],
+    values: &[f64],
+    settings: &DeflationSettings,
+    observer: &mut dyn FnMut(&DeflationReport) -> ControlFlow<()>,
+) -> Result<Vec<OffBranch>, DeflationError> {
     let mut run = |search: Deflation<'_, P>| {
         let mut stopped = false;
         let found = search.run_observed(&mut |report| {
@@ -184,7 +197,7 @@ pub fn lies_on<P: Problem>(
 /// Values of the parameter on one side of a near-bifurcation, inside or outside of the range of the
 /// branches. Beyond the end of a branch, where it goes on without being known, there are none.
 fn offsets<P: Problem>(
-    branches: &[Branch],
+    branches: &[&Branch],
     which: usize,
     problem: &P,
     near: &NearBifurcation,
@@ -213,7 +226,7 @@ fn offsets<P: Problem>(
 /// The search at the parameters `p` beside a near-bifurcation.
 fn beside<'a, P: Problem>(
     problem: &'a P,
-    branches: &[Branch],
+    branches: &[&Branch],
     which: usize,
     near: &NearBifurcation,
     p: &[f64],

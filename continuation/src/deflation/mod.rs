@@ -52,6 +52,7 @@ mod passing;
 mod settings;
 mod starts;
 
+pub(crate) use disconnected::off_branches;
 pub use disconnected::{OffBranch, disconnected, disconnected_observed, lies_on};
 pub use settings::DeflationSettings;
 

@@ -7,7 +7,7 @@ use super::{
     Diagram, DiagramBranch, DiagramError, DiagramProgress, DiagramStop, Origin, Unfinished,
 };
 use crate::branch::{Branch, EventKind, Statistics, Stop, StopReason};
-use crate::deflation::{DeflationReport, OffBranch, disconnected_observed};
+use crate::deflation::{DeflationReport, OffBranch, off_branches};
 use crate::events::Watch;
 use crate::near::{NearBifurcation, near_bifurcations};
 use crate::problem::Problem;
@@ -260,7 +260,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
     /// stop it.
     fn search(&mut self, observer: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Option<Task> {
         let search = self.settings.search.clone()?;
-        let known: Vec<Branch> = self.branches.iter().map(|one| one.branch.clone()).collect();
+        let known: Vec<&Branch> = self.branches.iter().map(|one| &one.branch).collect();
         loop {
             let (branch, near) = self.searched;
             let one = self.branches.get(branch)?;
@@ -276,7 +276,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
                 wish
             };
             let (problem, settings) = (self.problem, &search.deflation);
-            let found = disconnected_observed(problem, &known, beside, &[], settings, &mut hear);
+            let found = off_branches(problem, &known, beside, &[], settings, &mut hear);
             if stopped {
                 self.stopped = Some(DiagramStop::Interrupted);
                 return None;

@@ -290,14 +290,12 @@ impl<'a, P: Problem> Core<'a, P> {
     }
 
     /// The first state: `x.u` solves `f(u, x.p) = 0`; computes its tangent, the parameter
-    /// increasing or not, and lets `weigh` choose the weights from `(|du/dp|, |u|)` before the
-    /// tangent is normalised.
+    /// increasing or not, and the weights: `range` is how far the parameter is expected to go.
     pub(crate) fn start(
         &mut self,
         x: &mut State,
         increasing: bool,
         range: f64,
-        weigh: impl FnOnce(f64, f64) -> Weights,
     ) -> Result<(), Refusal> {
         self.assemble(&x.u, x.p).map_err(Refusal::Evaluation)?;
         let sign = if increasing { 1.0 } else { -1.0 };
@@ -321,11 +319,7 @@ impl<'a, P: Problem> Core<'a, P> {
             }
         }
         self.problem.metric(&x.tu, &mut x.mtu);
-        let du_dp = super::dot(&x.mtu, &x.tu).max(0.0).sqrt() / x.tp.abs();
-        self.problem.metric(&x.u, &mut self.mdu);
-        let size = super::dot(&self.mdu, &x.u).max(0.0).sqrt();
-        let along = self.bounded(x, du_dp * range, range);
-        self.weights = weigh(along, size);
+        self.weights = self.weigh(x, range);
         self.normalise(x)?;
         x.scale_tangent(sign);
         let base = x.clone();
@@ -338,11 +332,28 @@ impl<'a, P: Problem> Core<'a, P> {
         self.complete(x)
     }
 
-    /// How far the unknowns move along the tangent while the parameter passes its range: `along`,
-    /// unless the residual changes much more on that way than the parameter changes it. Beside a
+    /// Weights at the start, where the tangent has any length: what the problem says, else how far
+    /// the unknowns move along the tangent while the parameter passes its range, or the size that they
+    /// have.
+    fn weigh(&mut self, x: &State, range: f64) -> Weights {
+        if let Some(scale) = self.problem.unknown_scale(self.which) {
+            return Weights { unknowns: scale, parameter: scale };
+        }
+        self.problem.metric(&x.u, &mut self.mdu);
+        let size = super::dot(&self.mdu, &x.u).max(0.0).sqrt();
+        let reach = self.reach(x, range);
+        // a tangent along the parameter but for rounding says nothing
+        let along = if reach > 1e-8 * size { reach } else { 0.0 };
+        let unknowns = [along, size, 1.0].into_iter().find(|x| x.is_finite() && *x > 0.0);
+        Weights { unknowns: unknowns.unwrap_or(1.0), parameter: range }
+    }
+
+    /// How far the unknowns move along the tangent while the parameter passes its range, but not so
+    /// far that the residual changes much more on that way than the parameter changes it: beside a
     /// fold, where the tangent is steep, the branch bends long before.
-    fn bounded(&mut self, x: &State, along: f64, range: f64) -> f64 {
+    fn reach(&mut self, x: &State, range: f64) -> f64 {
         let norm = super::dot(&x.mtu, &x.tu).max(0.0).sqrt();
+        let along = norm / x.tp.abs() * range;
         let mut reach = if along.is_finite() { along } else { f64::MAX.sqrt() };
         let by_parameter = max_abs(self.bordered.column(0)) * range;
         if !(norm > 0.0 && by_parameter > 0.0) {

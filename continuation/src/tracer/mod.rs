@@ -129,17 +129,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let unit = Weights { unknowns: 1.0, parameter: 1.0 };
         let mut core = Core::new(problem, ParamId(which), p, unit, &settings);
         core.statistics.newton_iterations += report.iterations;
-        let natural = problem.unknown_scale(ParamId(which));
-        core.start(&mut start, increasing, range, |along, size| match natural {
-            Some(scale) => Weights { unknowns: scale, parameter: scale },
-            None => {
-                // a tangent along the parameter but for rounding says nothing
-                let along = if along > 1e-8 * size { along } else { 0.0 };
-                let unknowns = [along, size, 1.0].into_iter().find(|x| x.is_finite() && *x > 0.0);
-                Weights { unknowns: unknowns.unwrap_or(1.0), parameter: range }
-            }
-        })
-        .map_err(TraceError::Tangent)?;
+        core.start(&mut start, increasing, range).map_err(TraceError::Tangent)?;
         Self::set_up(core, start, p, settings, range)
     }
 

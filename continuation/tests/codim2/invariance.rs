@@ -1,81 +1,13 @@
 //! The units of `f`, `u`, `p` and `q` do not matter.
 
 use super::bands::{Ignition, ignition_branch};
+use super::scaled::Scaled;
 use super::{co_branch, co_oxidation};
 use continuation::codim2::{Curve, FoldCurve, HopfCurve};
-use continuation::linalg::Matrix;
-use continuation::{
-    Branch, EvalError, EventKind, ParamId, Parameter, Problem, Settings, Stability, Tracer, Watch,
-};
+use continuation::{Branch, EventKind, Settings, Tracer, Watch};
 use std::ops::ControlFlow;
 
-/// `a f(u/b, p/c)`, one `c` for each parameter.
-struct Scaled<P> {
-    inner: P,
-    a: f64,
-    b: f64,
-    c: [f64; 2],
-    parameters: Vec<Parameter>,
-}
-
-impl<P: Problem> Scaled<P> {
-    fn new(inner: P, (a, b, c): (f64, f64, [f64; 2])) -> Self {
-        let scaled = inner.parameters().iter().zip(c);
-        let parameters =
-            scaled.map(|(q, c)| Parameter { scale: c * q.scale, ..q.clone() }).collect();
-        Scaled { inner, a, b, c, parameters }
-    }
-    fn unscaled(&self, u: &[f64], p: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let p = p.iter().zip(self.c).map(|(x, c)| x / c).collect();
-        (u.iter().map(|x| x / self.b).collect(), p)
-    }
-}
-
-impl<P: Problem> Problem for Scaled<P> {
-    type Jacobian = P::Jacobian;
-    fn dim(&self) -> usize {
-        self.inner.dim()
-    }
-    fn parameters(&self) -> &[Parameter] {
-        &self.parameters
-    }
-    fn new_jacobian(&self) -> P::Jacobian {
-        self.inner.new_jacobian()
-    }
-    fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
-        let (u, p) = self.unscaled(u, p);
-        self.inner.residual(&u, &p, r)?;
-        r.iter_mut().for_each(|r| *r *= self.a);
-        Ok(())
-    }
-    fn jacobian(&self, u: &[f64], p: &[f64], j: &mut P::Jacobian) -> Result<(), EvalError> {
-        let (u, p) = self.unscaled(u, p);
-        let mut own = self.inner.new_jacobian();
-        self.inner.jacobian(&u, &p, &mut own)?;
-        j.set_zero();
-        j.axpy(self.a / self.b, &own);
-        Ok(())
-    }
-    fn parameter_derivative(
-        &self,
-        u: &[f64],
-        p: &[f64],
-        which: ParamId,
-        out: &mut [f64],
-    ) -> Result<(), EvalError> {
-        let (u, p) = self.unscaled(u, p);
-        self.inner.parameter_derivative(&u, &p, which, out)?;
-        out.iter_mut().for_each(|x| *x *= self.a / self.c[which.0]);
-        Ok(())
-    }
-    fn metric(&self, x: &[f64], y: &mut [f64]) {
-        self.inner.metric(x, y);
-    }
-    fn stability(&self) -> Stability {
-        self.inner.stability()
-    }
-}
-
+/// Factors of `f`, `u` and both parameters.
 const SCALES: [(f64, f64, [f64; 2]); 10] = [
     (1.0, 1.0, [1.0, 1.0]),
     (1e6, 1.0, [1.0, 1.0]),
@@ -135,7 +67,7 @@ fn fold_curves_of_a_dense_problem_and_of_a_band() {
     };
     let dense = SCALES.map(|scales| {
         let branch = rescaled(co_branch(&co_oxidation()), scales.1, scales.2);
-        let problem = Scaled::new(co_oxidation(), scales);
+        let problem = Scaled::new(co_oxidation(), scales.0, scales.1, &scales.2);
         let fold = branch.events_of(&EventKind::Fold).next().unwrap();
         let curve = FoldCurve::at(&problem, &branch, fold, "k").unwrap();
         let found = curve
@@ -146,7 +78,7 @@ fn fold_curves_of_a_dense_problem_and_of_a_band() {
     same(&dense);
     let band = SCALES.map(|scales| {
         let branch = rescaled(ignition_branch(&Ignition { n: 99 }), scales.1, scales.2);
-        let problem = Scaled::new(Ignition { n: 99 }, scales);
+        let problem = Scaled::new(Ignition { n: 99 }, scales.0, scales.1, &scales.2);
         let fold = branch.events_of(&EventKind::Fold).next().unwrap();
         let curve = FoldCurve::at(&problem, &branch, fold, "epsilon").unwrap();
         let watches = [Watch::stop_at("lambda", 9.0 * scales.2[0])];
@@ -169,7 +101,7 @@ fn hopf_curves() {
             }
         }
         let branch = rescaled(branch, scales.1, scales.2);
-        let problem = Scaled::new(co_oxidation(), scales);
+        let problem = Scaled::new(co_oxidation(), scales.0, scales.1, &scales.2);
         let event = branch.events_of(&EventKind::Hopf).next().unwrap();
         let curve = HopfCurve::at(&problem, &branch, event, "k").unwrap();
         let settings = Settings { domain: Some((0.0, 2.0 * scales.2[1])), ..Settings::default() };

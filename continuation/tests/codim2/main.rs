@@ -6,6 +6,9 @@ mod bands;
 mod branch_points;
 mod hopf;
 mod invariance;
+#[allow(dead_code, reason = "the factors for one parameter")]
+#[path = "../scaled/mod.rs"]
+mod scaled;
 
 use continuation::codim2::{Curve, CurveError, FoldCurve};
 use continuation::samples::Cusp;

@@ -3,25 +3,29 @@
 use continuation::linalg::Matrix;
 use continuation::{EvalError, ParamId, Parameter, Problem, Stability};
 
-/// `a f(u/b, p/c)`.
+/// `a f(u/b, p/c)`, one `c` for each parameter, the last one for all that follow.
 pub(crate) struct Scaled<P> {
     inner: P,
     a: f64,
     b: f64,
-    c: f64,
+    c: Vec<f64>,
     parameters: Vec<Parameter>,
 }
 
 impl<P: Problem> Scaled<P> {
-    pub(crate) fn new(inner: P, a: f64, b: f64, c: f64) -> Self {
+    pub(crate) fn new(inner: P, a: f64, b: f64, c: &[f64]) -> Self {
+        let last = c[c.len() - 1];
+        let c: Vec<f64> =
+            (0..inner.parameters().len()).map(|k| c.get(k).copied().unwrap_or(last)).collect();
+        let scaled = inner.parameters().iter().zip(&c);
         let parameters =
-            inner.parameters().iter().map(|q| Parameter { scale: c * q.scale, ..q.clone() });
-        let parameters = parameters.collect();
+            scaled.map(|(q, c)| Parameter { scale: c * q.scale, ..q.clone() }).collect();
         Scaled { inner, a, b, c, parameters }
     }
 
     fn unscaled(&self, u: &[f64], p: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        (u.iter().map(|x| x / self.b).collect(), p.iter().map(|x| x / self.c).collect())
+        let p = p.iter().zip(&self.c).map(|(x, c)| x / c).collect();
+        (u.iter().map(|x| x / self.b).collect(), p)
     }
 }
 
@@ -59,8 +63,11 @@ impl<P: Problem> Problem for Scaled<P> {
     ) -> Result<(), EvalError> {
         let (u, p) = self.unscaled(u, p);
         self.inner.parameter_derivative(&u, &p, which, out)?;
-        out.iter_mut().for_each(|x| *x *= self.a / self.c);
+        out.iter_mut().for_each(|x| *x *= self.a / self.c[which.0]);
         Ok(())
+    }
+    fn metric(&self, x: &[f64], y: &mut [f64]) {
+        self.inner.metric(x, y);
     }
     fn stability(&self) -> Stability {
         self.inner.stability()
