@@ -71,6 +71,8 @@ pub(crate) struct RingLoadCase {
     pub(crate) bending: f64,
     /// `P_A R0 / chi`.
     pub(crate) pressure: f64,
+    /// The polytropic exponent of the gas: 0 is constant pressure.
+    pub(crate) gas_exponent: f64,
     /// The mesh.
     pub(crate) mesh: MeshCase,
 }

@@ -14,7 +14,7 @@ use crate::units::{self, Dimension};
 const SHELL: &[&str] = &["law", "poisson", "b"];
 const DIMENSIONLESS: &[&str] =
     &["bending", "pressure", "adhesion", "film", "surface_tension", "gas_exponent"];
-const RING_GROUPS: &[&str] = &["bending", "pressure"];
+const RING_GROUPS: &[&str] = &["bending", "pressure", "gas_exponent"];
 const PHYSICAL: &[&str] = &[
     "radius",
     "young",
@@ -203,11 +203,13 @@ impl<'a> Resolver<'a> {
         let groups = self.table("dimensionless", RING_GROUPS);
         let bending = self.reader.required(groups, "bending", POSITIVE);
         let pressure = self.or(groups, "pressure", NOT_NEGATIVE, 0.0);
+        let gas_exponent = self.or(groups, "gas_exponent", NOT_NEGATIVE, 0.0);
         let mesh = self.mesh();
         let path = self.path(None, ANGLE, ANGLE);
-        let problem = match (shell, bending, pressure, mesh) {
-            (Some(shell), Some(bending), Some(pressure), Some(mesh)) => {
-                Some(ProblemCase::RingLoad(RingLoadCase { shell, bending, pressure, mesh }))
+        let problem = match (shell, bending, pressure, gas_exponent, mesh) {
+            (Some(shell), Some(bending), Some(pressure), Some(gas_exponent), Some(mesh)) => {
+                let case = RingLoadCase { shell, bending, pressure, gas_exponent, mesh };
+                Some(ProblemCase::RingLoad(case))
             }
             _ => None,
         };

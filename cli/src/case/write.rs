@@ -21,6 +21,7 @@ impl ResolvedCase {
                 out.table("dimensionless");
                 out.number("bending", case.bending);
                 out.number("pressure", case.pressure);
+                out.number("gas_exponent", case.gas_exponent);
                 mesh(&mut out, case.mesh);
             }
             ProblemCase::Catalogue(case) => {

@@ -85,6 +85,16 @@ impl Table {
         self.rows.push(row);
     }
 
+    /// Changes all numbers of a column.
+    pub(crate) fn convert(&mut self, column: &str, change: impl Fn(f64) -> f64) {
+        let Some(at) = self.columns.iter().position(|name| name == column) else { return };
+        for row in &mut self.rows {
+            if let Cell::Real(value) = row[at] {
+                row[at] = Cell::Real(change(value));
+            }
+        }
+    }
+
     /// Names of the columns.
     pub(crate) fn columns(&self) -> &[String] {
         &self.columns

@@ -76,13 +76,17 @@ pub(super) fn problem(
     build(contact).map_err(|error| RunError::Parameters { case: case.name.clone(), error })
 }
 
-fn build(contact: &ContactCase) -> Result<ContactProblem, shell_contact::ParameterError> {
-    let law = match contact.shell.law {
+/// The law of the membrane.
+pub(super) fn law(law: Law) -> shell_contact::Law {
+    match law {
         Law::Hooke => shell_contact::Law::Hooke,
         Law::MooneyRivlin { b } => shell_contact::Law::MooneyRivlin { b },
         Law::Skalak => shell_contact::Law::Skalak,
-    };
-    let shell = Shell { law, poisson: contact.shell.poisson };
+    }
+}
+
+fn build(contact: &ContactCase) -> Result<ContactProblem, shell_contact::ParameterError> {
+    let shell = Shell { law: law(contact.shell.law), poisson: contact.shell.poisson };
     let g = &contact.groups;
     let groups = Dimensionless {
         bending: g.bending,

@@ -6,6 +6,7 @@ mod diagram;
 mod form;
 mod general;
 mod map;
+mod ring_load;
 
 pub(crate) use map::run_map;
 
@@ -96,10 +97,7 @@ pub(crate) fn run_trace(
 ) -> Result<TraceResult, RunError> {
     match &case.problem {
         ProblemCase::Contact(contact) => contact::run(case, contact, observer),
-        ProblemCase::RingLoad(_) => Err(RunError::NotAvailable {
-            case: case.name.clone(),
-            problem: "ring-load".to_string(),
-        }),
+        ProblemCase::RingLoad(ring) => ring_load::run(case, ring, observer),
         ProblemCase::Catalogue(problem) => general::run(case, problem, observer),
     }
 }
