@@ -71,7 +71,7 @@ fn bad_input_is_refused() {
     for (setting, words) in [
         ("path.start=0", "between 0 and 90 degrees"),
         ("mesh.elements=10", "at least 16"),
-        ("dimensionless.bending=-1", "greater than 0"),
+        ("dimensionless.bending=-1", "must be positive"),
         ("dimensionless.adhesion=1", "adhesion"),
     ] {
         let output = arclen(folder.path(), &["trace", "ring.toml", "--set", setting, "--out", "o"]);
