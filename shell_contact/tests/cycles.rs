@@ -55,7 +55,7 @@ fn explore() {
             t.elapsed()
         );
         for j in &c.jumps {
-            let (a, b) = (&c.points[j.before], j.after.map(|k| &c.points[k]));
+            let (a, b) = (&c.points[j.before.unwrap()], j.after.map(|k| &c.points[k]));
             println!(
                 "  {:?} at {:.12} F {:.9} -> {:?} steps {} diss {:?}",
                 j.direction,
@@ -127,7 +127,7 @@ fn explore() {
                 t.elapsed()
             );
             for j in &c.jumps {
-                let (a, b) = (&c.points[j.before], j.after.map(|k| &c.points[k]));
+                let (a, b) = (&c.points[j.before.unwrap()], j.after.map(|k| &c.points[k]));
                 println!(
                     "    {:?} at {:.12} z {:.9} F {:.9} -> {:?} steps {} diss {:?}",
                     j.direction,

@@ -26,7 +26,7 @@ pub struct Balance {
 }
 
 /// Differences of this part of the largest work are not pursued.
-const NEGLIGIBLE: f64 = 1e-10;
+const NEGLIGIBLE: f64 = 1e-9;
 /// Most halvings of a segment.
 const DEEPEST: usize = 12;
 

@@ -2,9 +2,9 @@
 //! dissipative motion leads to another.
 
 use super::flow::{Motion, MotionError, Relaxation, RelaxationSettings};
+use super::start::device_watches;
 use super::walker::dot;
 use super::{Device, Loading};
-use crate::trace::force_watches;
 use continuation::{
     EvalError, Event, Point, Progress, Settings, Stop, StopReason, TraceError, Tracer,
 };
@@ -62,11 +62,13 @@ pub struct Jump {
     pub direction: Direction,
     /// The device's parameter, which does not change.
     pub parameter: f64,
-    /// Index of the last point before, in [`Cycle::points`].
-    pub before: usize,
+    /// Index of the last point before, in [`Cycle::points`]; `None` if the plate comes back from far
+    /// away.
+    pub before: Option<usize>,
     /// Index of the first point after; `None` if the plate flies away.
     pub after: Option<usize>,
-    /// Energy dissipated, in `χR0²` for the whole shell and both devices; `None` without bound.
+    /// Energy dissipated, in `χR0²` for the whole shell and both devices; `None` without bound, and for
+    /// a plate that comes from far away.
     pub dissipated: Option<f64>,
     /// Steps of the motion.
     pub steps: usize,
@@ -81,7 +83,7 @@ pub struct Cycle {
     pub points: Vec<CyclePoint>,
     /// The jumps between them, in order.
     pub jumps: Vec<Jump>,
-    /// Whether the last state is the first one.
+    /// Whether the last state is the first one, and the plate has not been far away in between.
     pub closed: bool,
     /// Why it ended: `ClosedLoop`; `Target` if it came back to another state; `Domain` if the plate
     /// flew away; else it is not complete.
@@ -107,6 +109,9 @@ pub enum CycleError {
 
 /// Event of a state that a jump led to.
 pub const JUMP: &str = "jump";
+
+/// Where a plate is that has flown away, in `R0`.
+const FAR: f64 = 5.0;
 
 /// States nearer than this, in `R0`, are the same.
 const SAME: f64 = 1e-8;
@@ -137,6 +142,7 @@ pub fn travel<P: Loading>(
         x: x.to_vec(),
         parameter: settings.start,
         first: None,
+        away: false,
     };
     let stopped = match traveller.legs(observer) {
         Ok(()) => traveller.end(),
@@ -155,6 +161,8 @@ struct Traveller<'p, P: Loading> {
     x: Vec<f64>,
     parameter: f64,
     first: Option<Vec<f64>>,
+    /// Whether the plate has flown away.
+    away: bool,
 }
 
 /// Why the cycle ends before it has come back.
@@ -185,14 +193,52 @@ impl<P: Loading> Traveller<'_, P> {
             } else {
                 Direction::Retract
             };
-            while let Stretch::Lost = self.stretch(direction, to, observer)? {
-                self.jump(direction)?;
-                if self.parameter == to {
+            if self.away && !self.comes_back(direction, to)? {
+                continue;
+            }
+            while self.parameter != to {
+                match self.stretch(direction, to, observer)? {
+                    Stretch::Target => break,
+                    Stretch::Lost => self.jump(direction)?,
+                }
+                if self.away {
                     break;
                 }
             }
         }
         Ok(())
+    }
+
+    /// A plate far away that is no longer pulled comes back: the attraction of the film alone brings it.
+    /// False if the load pulls all the way.
+    fn comes_back(&mut self, direction: Direction, to: f64) -> Result<bool, End> {
+        let problem = self.problem;
+        if to <= 0.0 {
+            return Ok(false);
+        }
+        self.parameter = 0.0;
+        let p = problem.contact().parameters_at(self.parameter);
+        let free = super::start::free_start(problem.contact(), FAR);
+        let Ok(free) = free else { return Ok(false) };
+        let from: Vec<f64> = free.into_iter().chain([FAR]).collect();
+        let motion = self.relaxation.from_state(problem, &from, &p);
+        self.cycle.newton_iterations += self.relaxation.assemblies();
+        if let Err(error) = motion {
+            return Err(self.refused(&error));
+        }
+        self.x.copy_from_slice(self.relaxation.state());
+        let landed = self.landing(direction).map_err(|e| self.refused(&MotionError::Start(e)))?;
+        self.cycle.jumps.push(Jump {
+            direction,
+            parameter: self.parameter,
+            before: None,
+            after: Some(self.cycle.points.len()),
+            dissipated: None,
+            steps: self.relaxation.steps(),
+        });
+        self.cycle.points.push(landed);
+        self.away = false;
+        Ok(true)
     }
 
     /// Follows the stable state until it is lost or the parameter is at `target`.
@@ -221,7 +267,7 @@ impl<P: Loading> Traveller<'_, P> {
         let name = problem.device().parameter_name();
         let p = problem.contact().parameters_at(self.parameter);
         let tracer = Tracer::new(problem, name, &self.x, &p, trace)
-            .and_then(|tracer| tracer.watching(&force_watches()));
+            .and_then(|tracer| tracer.watching(&device_watches(problem.device())));
         let mut tracer = match tracer {
             Ok(tracer) => tracer,
             Err(error) if self.cycle.points.is_empty() => return Err(End::Error(error.into())),
@@ -298,12 +344,11 @@ impl<P: Loading> Traveller<'_, P> {
         let mut jump = Jump {
             direction,
             parameter: self.parameter,
-            before,
+            before: Some(before),
             after: None,
             dissipated: None,
             steps: self.relaxation.steps(),
         };
-        let name = problem.device().parameter_name();
         match motion {
             Ok(Motion::Rest) => {
                 self.x.copy_from_slice(self.relaxation.state());
@@ -317,9 +362,8 @@ impl<P: Loading> Traveller<'_, P> {
             }
             Ok(Motion::Away) => {
                 self.cycle.jumps.push(jump);
-                let detail =
-                    format!("no state holds {name} = {:.6}: the plate flies away", self.parameter);
-                Err(End::stop(StopReason::Domain, detail))
+                self.away = true;
+                Ok(())
             }
             Err(error) => Err(self.refused(&error)),
         }
@@ -372,21 +416,28 @@ impl<P: Loading> Traveller<'_, P> {
 
     /// After both ways: whether the path came back to its beginning.
     fn end(&mut self) -> Stop {
+        let stop = |reason, detail: &str| Stop { reason, detail: detail.to_owned() };
+        if self.away {
+            return stop(StopReason::Domain, "the plate flew away: no state holds the load");
+        }
         let difference: Vec<f64> = match &self.first {
             Some(first) => self.x.iter().zip(first).map(|(a, b)| a - b).collect(),
             None => Vec::new(),
         };
         let mut m = vec![0.0; difference.len()];
         self.problem.metric(&difference, &mut m);
-        self.cycle.closed = dot(&m, &difference).max(0.0).sqrt() < SAME;
-        let (reason, detail) = if self.cycle.closed {
-            (StopReason::ClosedLoop, String::new())
-        } else {
-            let detail = "back at the start, but in another state: the start lies where there are \
-                          several";
-            (StopReason::Target, detail.to_owned())
-        };
-        Stop { reason, detail }
+        let back = dot(&m, &difference).max(0.0).sqrt() < SAME;
+        let bounded = self.cycle.jumps.iter().all(|jump| jump.dissipated.is_some());
+        self.cycle.closed = back && bounded;
+        match (back, bounded) {
+            (true, true) => stop(StopReason::ClosedLoop, ""),
+            (true, false) => stop(StopReason::Target, "the plate flew away and came back"),
+            (false, _) => stop(
+                StopReason::Target,
+                "back at the start, but in another state than at first: the start lies where there \
+                 are several",
+            ),
+        }
     }
 }
 

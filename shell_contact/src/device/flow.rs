@@ -76,10 +76,11 @@ pub enum MotionError {
     End(NewtonError),
 }
 
-/// Distance from a fold at which a motion begins, in `R0`: far above the error of the fold.
-const DEPARTURE: f64 = 1e-4;
-/// The same at most, where the potential is flat.
-const FARTHEST_DEPARTURE: f64 = 0.02;
+/// Distance from a fold at which a motion begins, in `R0`, at most: where the potential is cubic
+/// along the critical mode.
+const FARTHEST_DEPARTURE: f64 = 1e-3;
+/// The same at least: well above the error of the fold and of rounding.
+const NEAREST_DEPARTURE: f64 = 1e-7;
 /// Part of the fold's time scale that the first step takes.
 const FIRST: f64 = 0.125;
 /// Inverse iterations for the critical mode.
@@ -205,31 +206,26 @@ impl<P: Loading> Relaxation<P> {
             let size = length(problem, &self.mode, &mut self.work);
             self.mode.iter_mut().for_each(|m| *m /= size);
         }
-        let mut distance = DEPARTURE;
-        while distance <= FARTHEST_DEPARTURE {
-            // slope of the potential along the mode on either side, away from the state
-            let (Some(up), Some(down)) =
-                (self.slope(problem, x, p, distance), self.slope(problem, x, p, -distance))
-            else {
-                return Err(MotionError::NoWayDown);
-            };
-            let (up, down) = (up, -down);
-            let time = distance / up.min(down).abs();
-            let falls = |slope: f64| slope < 0.0;
-            match (falls(up), falls(down)) {
-                (true, true) if up < down => return Ok(([Some(1.0), Some(-1.0)], distance, time)),
-                (true, true) => return Ok(([Some(-1.0), Some(1.0)], distance, time)),
-                // a fold: quadratic, so that the slopes differ in sign alone
-                (true, false) if down < -3.0 * up => {
-                    return Ok(([Some(1.0), None], distance, time));
+        // downwards: farther out the straight line along the mode climbs the stiff directions
+        let (mut distance, mut both) = (FARTHEST_DEPARTURE, None);
+        while distance >= NEAREST_DEPARTURE {
+            // slopes of the potential along the mode, away from the state
+            let up = self.slope(problem, x, p, distance);
+            let down = self.slope(problem, x, p, -distance).map(|slope| -slope);
+            if let (Some(up), Some(down)) = (up, down) {
+                let alike = up.abs().max(down.abs()) < 2.0 * up.abs().min(down.abs());
+                let (first, time) =
+                    (if up < down { 1.0 } else { -1.0 }, distance / up.min(down).abs());
+                if alike && up * down < 0.0 {
+                    return Ok(([Some(first), None], distance, time));
                 }
-                (false, true) if up < -3.0 * down => {
-                    return Ok(([Some(-1.0), None], distance, time));
+                if alike && up < 0.0 && both.is_none() {
+                    both = Some(([Some(first), Some(-first)], distance, time));
                 }
-                _ => distance *= 2.0,
             }
+            distance *= 0.25;
         }
-        Err(MotionError::NoWayDown)
+        both.ok_or(MotionError::NoWayDown)
     }
 
     fn slope(&mut self, problem: &P, x: &[f64], p: &[f64], distance: f64) -> Option<f64> {

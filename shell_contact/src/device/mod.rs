@@ -22,7 +22,7 @@ pub use cycle::{Cycle, CycleError, CyclePoint, CycleSettings, Direction, JUMP, J
 pub use flow::{Motion, MotionError, Relaxation, RelaxationSettings};
 pub use loaded::LoadedProblem;
 pub use maxwell::{MaxwellPoint, maxwell_points};
-pub use start::{StartError, free_start, loaded_start};
+pub use start::{StartError, device_watches, free_start, loaded_start, trace_loaded};
 
 use crate::contact::ContactProblem;
 use crate::film::Potential;

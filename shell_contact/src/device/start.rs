@@ -4,7 +4,11 @@ use super::flow::{MotionError, Relaxation, RelaxationSettings};
 use super::{Device, DeviceError, LoadedProblem, Loading};
 use crate::contact::ContactProblem;
 use crate::film::Potential;
-use continuation::{Matrix, NewtonSettings, Problem, Settings, TraceError, Tracer, newton};
+use crate::trace::{ContactBranch, force_watches};
+use continuation::{
+    Matrix, NewtonSettings, Problem, Progress, Settings, TraceError, Tracer, Watch, newton,
+};
+use std::ops::ControlFlow;
 
 /// Why there is no stable state to start from.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -58,6 +62,33 @@ pub fn free_start<F: Potential>(
     let mut relaxation = Relaxation::new(contact, RelaxationSettings::default());
     relaxation.from_state(contact, &contact.initial_state(), &p)?;
     Ok(relaxation.state().to_vec())
+}
+
+/// Traces the branch under a device in the device's own parameter, from [`loaded_start`] on;
+/// `settings` says where it ends.
+///
+/// # Errors
+/// When there is no start; a branch that ends early is a result.
+pub fn trace_loaded<F: Potential>(
+    loaded: &LoadedProblem<'_, F>,
+    start: f64,
+    settings: Settings,
+    observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<ContactBranch, StartError> {
+    let (x, p) = (loaded_start(loaded, start)?, loaded.parameters_at(start));
+    let device = loaded.device();
+    let tracer = Tracer::new(loaded, device.parameter_name(), &x, &p, settings)?
+        .watching(&device_watches(device))?;
+    Ok(ContactBranch::new(tracer.run(observer), None))
+}
+
+/// What is watched under a device: zeros and extrema of the force; under a dead load its extrema are
+/// the folds, and those of the plate's height are watched.
+pub fn device_watches(device: Device) -> [Watch; 2] {
+    match device {
+        Device::DeadLoad => [Watch::zero("force"), Watch::extremum("z0")],
+        _ => force_watches(),
+    }
 }
 
 /// How far from the equator the plates are where a shell counts as free, in `R0`.
