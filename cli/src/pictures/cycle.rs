@@ -52,15 +52,17 @@ pub(crate) fn draw_cycle(cycle: &CyclePictures) -> Result<Vec<(String, Vec<u8>)>
 fn hysteresis(cycle: &CyclePictures) -> Result<String, DrawError> {
     let curves = [&cycle.complete, &cycle.approach, &cycle.retract];
     let all: Vec<Curve> = curves.into_iter().cloned().collect();
-    // the part near the jumps is what matters; the far ends of long paths are cut by nothing else
     let x = Axis::of(DISTANCE, values(&all, |c| &c.x), 7);
     let y = Axis::of(FORCE, values(&all, |c| &c.y), 7);
     let units = (x.unit, y.unit);
     let (way_in, way_out, leap) = (of_state(1), of_state(2), of_state(3));
-    let mut lines = curve_lines(&cycle.complete, FAINT, units);
-    for (curve, color) in [(&cycle.retract, way_out), (&cycle.approach, way_in)] {
-        lines.extend(curve_lines(curve, color, units));
+    let mut lines = Vec::new();
+    // where both ways are one, the way out is a rim
+    for (curve, color, width) in [(&cycle.retract, way_out, 6), (&cycle.approach, way_in, 2)] {
+        lines.extend(curve_lines(curve, color, units).into_iter().map(|l| Line { width, ..l }));
     }
+    let unstable = curve_lines(&cycle.complete, FAINT, units).into_iter().filter(|l| l.dashed);
+    lines.extend(unstable);
     let size = (f64::from(WIDE.0), f64::from(WIDE.1));
     let scale = (size.0 / (x.high - x.low), size.1 / (y.high - y.low));
     let mut arrow = |from: Place, to: Place, color: Color, shaft: bool| {
@@ -86,7 +88,7 @@ fn hysteresis(cycle: &CyclePictures) -> Result<String, DrawError> {
         lines.push(Line { points, color, width: 2, dashed: false });
     };
     for (curve, color) in [(&cycle.retract, way_out), (&cycle.approach, way_in)] {
-        if let Some((from, to)) = middle(curve, scale, units) {
+        if let Some((from, to)) = far_along(curve, scale, units) {
             arrow(from, to, color, false);
         }
     }
@@ -108,8 +110,11 @@ fn hysteresis(cycle: &CyclePictures) -> Result<String, DrawError> {
     Chart { title: shown(&cycle.title), x, y, lines, marks, legend, size: WIDE }.svg()
 }
 
-/// The step of a curve halfway along it as it is drawn, for an arrow that shows which way it goes.
-fn middle(curve: &Curve, scale: (f64, f64), units: (f64, f64)) -> Option<(Place, Place)> {
+/// How far along a curve its arrow is: apart from that of the way back.
+const FAR: f64 = 0.4;
+
+/// The step of a curve that far along it as it is drawn, for an arrow that shows which way it goes.
+fn far_along(curve: &Curve, scale: (f64, f64), units: (f64, f64)) -> Option<(Place, Place)> {
     let at = |k: usize| (curve.x[k], curve.y[k]);
     let step = |k: usize| {
         let ((x0, y0), (x1, y1)) = (at(k), at(k + 1));
@@ -121,7 +126,7 @@ fn middle(curve: &Curve, scale: (f64, f64), units: (f64, f64)) -> Option<(Place,
     let mut so_far = 0.0;
     for k in 0..steps {
         so_far += step(k);
-        if so_far >= 0.5 * total && step(k) > 0.0 {
+        if so_far >= FAR * total && step(k) > 0.0 {
             return Some((at(k), at(k + 1)));
         }
     }

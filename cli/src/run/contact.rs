@@ -17,8 +17,8 @@ pub(super) const SAMPLES: usize = 801;
 /// Longest step by default, in R0: short enough for curves that look smooth.
 const SMOOTH: f64 = 0.01;
 
-/// Steps over the range of a force by default.
-const FORCES: f64 = 100.0;
+/// Fewest steps over the range of a device's parameter by default.
+const STEPS: f64 = 100.0;
 
 /// Trace a contact case.
 pub(super) fn run(
@@ -49,7 +49,7 @@ pub(super) fn follow(
         (traced, points)
     } else {
         let loaded = LoadedProblem::new(problem, device).map_err(|e| not_held(case, e.into()))?;
-        let traced = trace_loaded(&loaded, start, loaded_path(case, device), listen)
+        let traced = trace_loaded(&loaded, start, loaded_path(case), listen)
             .map_err(|detail| not_held(case, detail))?;
         let points = maxwell_points(&loaded, &traced.branch);
         (traced, points)
@@ -80,14 +80,14 @@ pub(super) fn device(contact: &ContactCase) -> Device {
 }
 
 /// The tracer's settings under a device.
-pub(super) fn loaded_path(case: &ResolvedCase, device: Device) -> Settings {
+pub(super) fn loaded_path(case: &ResolvedCase) -> Settings {
     let settings = path(case);
-    if device != Device::DeadLoad || case.path.max_step.is_some() {
+    if case.path.max_step.is_some() {
         return settings;
     }
-    // the force counts in the length of a step
+    // the device's parameter counts in the length of a step
     let range = (case.path.end - case.path.start).abs();
-    let max_step = settings.max_step.map(|step| step.max(range / FORCES));
+    let max_step = settings.max_step.map(|step| step.max(range / STEPS));
     Settings { max_step, ..settings }
 }
 

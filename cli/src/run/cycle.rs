@@ -44,7 +44,7 @@ pub(crate) fn run_cycle(
         go(case, &problem, &x, path(case), observer)
     } else {
         let loaded = LoadedProblem::new(&problem, device).map_err(|e| not_held(case, e.into()))?;
-        go(case, &loaded, &first.u, loaded_path(case, device), observer)
+        go(case, &loaded, &first.u, loaded_path(case), observer)
     }?;
     // a path whose states are all admissible has its work
     let balance = balance(&problem, &cycle).ok();

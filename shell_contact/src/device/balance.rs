@@ -91,14 +91,19 @@ impl<F: Potential> Integral<'_, F> {
         self.refine(&a, &b, whole, 0)
     }
 
-    /// `∫F dz0` of the Hermite polynomials between two nodes.
-    fn piece(&mut self, a: &Node, b: &Node) -> f64 {
+    /// Estimated length of the curve between two nodes.
+    fn arc(&mut self, a: &Node, b: &Node) -> f64 {
         let chord = self.walker.look_from_to(&a.place, &b.place);
         let turn: Vec<f64> = a.tangent.du.iter().zip(&b.tangent.du).map(|(a, b)| b - a).collect();
         self.walker.look_along(&turn, b.tangent.dz0 - a.tangent.dz0);
         let turn = self.walker.size_of(&turn, b.tangent.dz0 - a.tangent.dz0);
         // an arc that turns by so much is that much longer than its chord
-        let arc = chord * (1.0 + turn * turn / 24.0);
+        chord * (1.0 + turn * turn / 24.0)
+    }
+
+    /// `∫F dz0` of the Hermite polynomials between two nodes.
+    fn piece(&mut self, a: &Node, b: &Node) -> f64 {
+        let arc = self.arc(a, b);
         let z = Cubic::new(a.place.z0, b.place.z0, arc * a.tangent.dz0, arc * b.tangent.dz0);
         let f = Cubic::new(a.force, b.force, arc * a.tangent.dforce, arc * b.tangent.dforce);
         // three points of Gauss are exact to degree five, the product's
@@ -108,11 +113,18 @@ impl<F: Potential> Integral<'_, F> {
     }
 
     fn refine(&mut self, a: &Node, b: &Node, whole: f64, depth: usize) -> Result<f64, EvalError> {
+        // the middle of the cubic through both
+        let eighth = 0.125 * self.arc(a, b);
         let length = self.walker.look_from_to(&a.place, &b.place);
-        let mix = |a: f64, b: f64| 0.5 * (a + b);
+        let (ta, tb) = (&a.tangent, &b.tangent);
+        let mix = |a: f64, b: f64, ta: f64, tb: f64| 0.5 * (a + b) + eighth * (ta - tb);
+        let ends = a.place.u.iter().zip(&b.place.u);
         let mut place = Place {
-            u: a.place.u.iter().zip(&b.place.u).map(|(a, b)| mix(*a, *b)).collect(),
-            z0: mix(a.place.z0, b.place.z0),
+            u: ends
+                .zip(ta.du.iter().zip(&tb.du))
+                .map(|((a, b), (s, t))| mix(*a, *b, *s, *t))
+                .collect(),
+            z0: mix(a.place.z0, b.place.z0, ta.dz0, tb.dz0),
         };
         if self.walker.correct(&a.place, 0.5 * length * length, &mut place).is_none() {
             self.error += whole.abs();

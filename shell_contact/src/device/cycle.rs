@@ -450,6 +450,6 @@ impl Cycle {
 
     /// Energy dissipated by all jumps; `None` if one of them has no end.
     pub fn dissipated(&self) -> Option<f64> {
-        self.jumps.iter().map(|jump| jump.dissipated).sum()
+        self.jumps.iter().try_fold(0.0, |sum, jump| Some(sum + jump.dissipated?))
     }
 }

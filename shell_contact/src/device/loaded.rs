@@ -179,10 +179,7 @@ impl<F: Potential> Problem for LoadedProblem<'_, F> {
         y[n] = x[n];
     }
 
-    /// The base is a length as the unknowns are; a force is none.
-    fn unknown_scale(&self, which: ParamId) -> Option<f64> {
-        (which == ParamId(0) && self.device != Device::DeadLoad).then_some(1.0)
-    }
+    // no `unknown_scale`: the base of a soft spring is a length that moves much farther than the shell
 
     fn stability(&self) -> Stability {
         Stability::EnergyHessian
@@ -265,5 +262,137 @@ impl<F: Potential> Loading for LoadedProblem<'_, F> {
         self.contact.add_drag(a, j.core_mut());
         let corner = j.corner(0, 0);
         j.set_corner(0, 0, corner + a);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certify::{H, dot, energy, problem, state};
+    use crate::dual::{close, real};
+    use crate::params::Law;
+    use continuation::{Matrix, check_derivatives};
+    use num_dual::DualNum;
+
+    const DEVICES: [Device; 2] = [Device::DeadLoad, Device::Cantilever { stiffness: 7.0 }];
+
+    /// The potential written once more, with the plate moved along `a` and `b` too.
+    fn potential(device: Device, contact: &ContactProblem, x: &[f64], dual: [H; 6], z0: H) -> H {
+        potential_along(device, contact, x, [&vec![0.0; x.len()], &vec![0.0; x.len()]], dual, z0)
+    }
+
+    fn potential_along(
+        device: Device,
+        contact: &ContactProblem,
+        x: &[f64],
+        [a, b]: [&[f64]; 2],
+        dual: [H; 6],
+        z0: H,
+    ) -> H {
+        let n = contact.dim();
+        let mut inner = dual;
+        inner[0] = z0;
+        let unit = dual[parameter::BENDING.0].sqrt() * (0.5 / PI);
+        let load = match device {
+            Device::Cantilever { stiffness } => (z0 - dual[0]) * (z0 - dual[0]) * (0.5 * stiffness),
+            _ => dual[0] * z0,
+        };
+        energy(contact, &x[..n], &a[..n], &b[..n], inner) + unit * load
+    }
+
+    #[test]
+    fn residual_hessian_and_parameter_derivatives_agree_with_dual_numbers() {
+        let contact = problem(Law::MooneyRivlin { b: 0.7 }, 4);
+        let n = contact.dim();
+        for device in DEVICES {
+            let loaded = LoadedProblem::new(&contact, device).unwrap();
+            let x = loaded.state(&state(n, 0.3, 0.01), 1.07);
+            let p = loaded.parameters_at(0.9);
+            let plain: [H; 6] = std::array::from_fn(|k| real(p[k]));
+            let (mut r, mut alone) = (vec![0.0; n + 1], vec![0.0; n + 1]);
+            let (mut j, mut again) = (loaded.new_jacobian(), loaded.new_jacobian());
+            loaded.linearise(&x, &p, &mut r, &mut j).unwrap();
+            loaded.residual(&x, &p, &mut alone).unwrap();
+            loaded.jacobian(&x, &p, &mut again).unwrap();
+            assert!((0..=n).all(|i| (r[i] - alone[i]).abs() < 1e-15));
+            let (mut jb, mut jb_again) = (vec![0.0; n + 1], vec![0.0; n + 1]);
+            for seed in 0..4 {
+                let a = state(n + 1, 1.0 + f64::from(seed), 1.0);
+                let b = state(n + 1, 2.7 * f64::from(seed), 1.0);
+                let z0 = H::new(x[n], a[n], b[n], 0.0);
+                let e = potential_along(device, &contact, &x, [&a, &b], plain, z0);
+                let size = |x: &[f64], y: &[f64]| dot(x, x).sqrt() * dot(y, y).sqrt();
+                close(dot(&r, &a), e.eps1, 1e-12, 1e-14 * size(&r, &a));
+                j.mul(&b, &mut jb);
+                again.mul(&b, &mut jb_again);
+                close(dot(&a, &jb), e.eps1eps2, 1e-12, 1e-14 * size(&a, &jb));
+                close(dot(&a, &jb), dot(&a, &jb_again), 1e-13, 1e-14 * size(&a, &jb));
+                for k in 0..parameter::COUNT {
+                    let mut dual = plain;
+                    dual[k].eps2 = 1.0;
+                    let still = vec![0.0; n + 1];
+                    let z0 = H::new(x[n], a[n], 0.0, 0.0);
+                    let e = potential_along(device, &contact, &x, [&a, &still], dual, z0);
+                    loaded.parameter_derivative(&x, &p, ParamId(k), &mut alone).unwrap();
+                    close(dot(&alone, &a), e.eps1eps2, 1e-12, 1e-13 * size(&alone, &a));
+                }
+            }
+            let check = check_derivatives(&loaded, &x, &p, 1e-3).unwrap();
+            assert!(check.is_within(1e-7), "{check:?}");
+        }
+    }
+
+    /// `U_T + device = 4π` times the potential of the half shell over `2π`.
+    #[test]
+    fn potential_is_that_of_the_residual() {
+        let contact = problem(Law::Hooke, 4);
+        for device in DEVICES {
+            let loaded = LoadedProblem::new(&contact, device).unwrap();
+            let x = loaded.state(&state(contact.dim(), 0.3, 0.01), 1.07);
+            let p = loaded.parameters_at(0.9);
+            let plain: [H; 6] = std::array::from_fn(|k| real(p[k]));
+            let half = potential(device, &contact, &x, plain, real(1.07)).re;
+            close(loaded.potential(&x, &p).unwrap(), 4.0 * PI * half, 1e-12, 0.0);
+        }
+    }
+
+    #[test]
+    fn observable_slopes_agree_with_differences() {
+        let contact = problem(Law::Hooke, 4);
+        let n = contact.dim();
+        for device in DEVICES {
+            let loaded = LoadedProblem::new(&contact, device).unwrap();
+            let (x, dx) = (loaded.state(&state(n, 0.3, 0.01), 1.07), state(n + 1, 1.9, 1.0));
+            let p = loaded.parameters_at(0.9);
+            let at = |t: f64| {
+                let moved: Vec<f64> = x.iter().zip(&dx).map(|(x, d)| x + t * d).collect();
+                let mut out = vec![0.0; NAMES.len()];
+                loaded.observe(&moved, &p, &mut out).unwrap();
+                out
+            };
+            let h = 1e-5;
+            let (up, down, up2, down2) = (at(h), at(-h), at(2.0 * h), at(-2.0 * h));
+            let mut known = 0;
+            for k in 0..NAMES.len() {
+                let slope = loaded.observable_slope(k, &x, &p, ParamId(0), &dx, 0.7).unwrap();
+                if let Some(slope) = slope {
+                    known += 1;
+                    let difference = (8.0 * (up[k] - down[k]) - (up2[k] - down2[k])) / (12.0 * h);
+                    close(slope, difference, 1e-8, 1e-9);
+                }
+            }
+            assert_eq!(known, 5);
+        }
+    }
+
+    #[test]
+    fn impossible_devices_are_refused() {
+        let contact = problem(Law::Hooke, 4);
+        let new = |device| LoadedProblem::new(&contact, device).map(|_| ()).unwrap_err();
+        assert_eq!(new(Device::Grip), DeviceError::Grip);
+        for value in [0.0, -1.0, f64::INFINITY] {
+            let error = new(Device::Cantilever { stiffness: value });
+            assert_eq!(error, DeviceError::Stiffness { value });
+        }
     }
 }
