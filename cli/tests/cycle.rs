@@ -171,7 +171,8 @@ fn a_cycle_cut_short_keeps_what_it_has() {
 #[test]
 fn a_trace_goes_in_the_device_s_parameter() {
     let place = tempfile::tempdir().unwrap();
-    let trace = ["trace", "cantilever", "--elements", "100", "--set", "path.end=0.9", "--out", "o"];
+    let trace =
+        ["trace", "cantilever", "--elements", "100", "--set", "path.end=0.75", "--out", "o"];
     let output = arclen(place.path(), &trace);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let json = read(&place.path().join("o/events.json"));
@@ -186,7 +187,7 @@ fn a_trace_goes_in_the_device_s_parameter() {
     near(&json["maxwell"][0]["base"], 1.179_609_1, 1e-6);
     let (names, rows) = columns(&place.path().join("o/branch.csv"));
     assert_eq!(names[15..], ["event", "base"]);
-    assert_eq!(rows.last().unwrap()[16], "0.9");
+    assert_eq!(rows.last().unwrap()[16], "0.75");
     let load = ["device.kind=dead-load", "path.start=0", "path.end=2"];
     let mut trace = vec!["trace", "fig12", "--elements", "100", "--json"];
     trace.extend(load.iter().flat_map(|set| ["--set", set]));

@@ -6,7 +6,8 @@ use crate::contact::ContactProblem;
 use crate::film::Potential;
 use crate::trace::{ContactBranch, force_watches};
 use continuation::{
-    Matrix, NewtonSettings, Problem, Progress, Settings, TraceError, Tracer, Watch, newton,
+    Matrix, NewtonSettings, Problem, Progress, Settings, Stop, StopReason, TraceError, Tracer,
+    Watch, newton,
 };
 use std::ops::ControlFlow;
 
@@ -65,7 +66,7 @@ pub fn free_start<F: Potential>(
 }
 
 /// Traces the branch under a device in the device's own parameter, from [`loaded_start`] on;
-/// `settings` says where it ends.
+/// `settings` says where it ends, and that of a dead load ends where the plate is far away.
 ///
 /// # Errors
 /// When there is no start; a branch that ends early is a result.
@@ -77,9 +78,20 @@ pub fn trace_loaded<F: Potential>(
 ) -> Result<ContactBranch, StartError> {
     let (x, p) = (loaded_start(loaded, start)?, loaded.parameters_at(start));
     let device = loaded.device();
-    let tracer = Tracer::new(loaded, device.parameter_name(), &x, &p, settings)?
-        .watching(&device_watches(device))?;
-    Ok(ContactBranch::new(tracer.run(observer), None))
+    let target = settings.target;
+    let mut watches = device_watches(device).to_vec();
+    if device == Device::DeadLoad {
+        watches.push(Watch::stop_at("z0", AWAY));
+    }
+    let tracer =
+        Tracer::new(loaded, device.parameter_name(), &x, &p, settings)?.watching(&watches)?;
+    let mut branch = tracer.run(observer);
+    let met = branch.points.last().is_some_and(|last| Some(last.p) == target);
+    if branch.stopped.reason == StopReason::Target && !met {
+        let detail = "the plate is far away: no force holds it there".to_owned();
+        branch.stopped = Stop { reason: StopReason::Domain, detail };
+    }
+    Ok(ContactBranch::new(branch, None))
 }
 
 /// What is watched under a device: zeros and extrema of the force; under a dead load its extrema are
@@ -91,6 +103,8 @@ pub fn device_watches(device: Device) -> [Watch; 2] {
     }
 }
 
+/// Where the branch under a dead load ends, which goes on for ever, in `R0`.
+const AWAY: f64 = 10.0;
 /// How far from the equator the plates are where a shell counts as free, in `R0`.
 const FAR: f64 = 5.0;
 /// Step of the search, in `R0`.
