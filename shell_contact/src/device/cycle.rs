@@ -2,7 +2,7 @@
 //! dissipative motion leads to another.
 
 use super::flow::{Motion, MotionError, Relaxation, RelaxationSettings};
-use super::start::device_watches;
+use super::start::{device_settings, device_watches};
 use super::walker::dot;
 use super::{Device, Loading};
 use continuation::{
@@ -264,6 +264,7 @@ impl<P: Loading> Traveller<'_, P> {
             max_points: left,
             ..self.settings.trace.clone()
         };
+        let trace = device_settings(problem.device(), trace);
         let name = problem.device().parameter_name();
         let p = problem.contact().parameters_at(self.parameter);
         let tracer = Tracer::new(problem, name, &self.x, &p, trace)
@@ -444,8 +445,10 @@ impl<P: Loading> Traveller<'_, P> {
 impl Cycle {
     /// The point of most attractive force on the way back, from the turn on.
     pub fn pull_off(&self) -> Option<&CyclePoint> {
+        let largest = self.points.iter().fold(0.0_f64, |m, p| m.max(p.force.abs()));
         let retract = self.points.iter().filter(|p| p.direction == Direction::Retract);
-        retract.filter(|p| p.force < 0.0).min_by(|a, b| a.force.total_cmp(&b.force))
+        // a force of zero is no attraction
+        retract.filter(|p| p.force < -1e-12 * largest).min_by(|a, b| a.force.total_cmp(&b.force))
     }
 
     /// Energy dissipated by all jumps; `None` if one of them has no end.

@@ -78,7 +78,7 @@ pub fn trace_loaded<F: Potential>(
 ) -> Result<ContactBranch, StartError> {
     let (x, p) = (loaded_start(loaded, start)?, loaded.parameters_at(start));
     let device = loaded.device();
-    let target = settings.target;
+    let (target, settings) = (settings.target, device_settings(device, settings));
     let mut watches = device_watches(device).to_vec();
     if device == Device::DeadLoad {
         watches.push(Watch::stop_at("z0", AWAY));
@@ -92,6 +92,19 @@ pub fn trace_loaded<F: Potential>(
         branch.stopped = Stop { reason: StopReason::Domain, detail };
     }
     Ok(ContactBranch::new(branch, None))
+}
+
+/// Shortest step under a device, in `R0`.
+const SHORTEST: f64 = 1e-10;
+
+/// Settings without a shortest step get one that is fit for the folds of a device: where the force
+/// falls steeply behind its maximum they are needles, far thinner than those of a grip.
+pub(super) fn device_settings(device: Device, settings: Settings) -> Settings {
+    if device == Device::Grip || settings.min_step.is_some() {
+        return settings;
+    }
+    let min_step = Some(settings.max_step.map_or(SHORTEST, |max| max.min(SHORTEST)));
+    Settings { min_step, ..settings }
 }
 
 /// What is watched under a device: zeros and extrema of the force; under a dead load its extrema are

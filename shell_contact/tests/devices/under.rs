@@ -1,10 +1,11 @@
 //! Folds and stability of devices, seen from the branch of the grip.
 
 use super::{close, ends, fig12, fig16, grip_branch, held};
-use continuation::{EventKind, Matrix, Problem, StopReason};
+use continuation::{EventKind, Matrix, Problem, Settings, StopReason};
 use shell_contact::device::StartError;
-use shell_contact::device::{balance, loaded_start, under};
+use shell_contact::device::{balance, loaded_start, trace_loaded, under};
 use shell_contact::{Device, LoadedProblem};
+use std::ops::ControlFlow;
 
 const CANTILEVERS: [Device; 2] =
     [Device::Cantilever { stiffness: 20.0 }, Device::Cantilever { stiffness: 200.0 }];
@@ -89,6 +90,20 @@ fn folds_under_the_grip_are_those_of_the_trace() {
         close(fold.force, branch.points[event.point].observables[0], 1e-7);
         assert_eq!(fold.unstable_before, event.unstable_before);
         assert_eq!(fold.unstable_after, event.unstable_after);
+    }
+}
+
+/// At the fold of a soft spring behind the sharp maximum of the force the branch turns within 1e-7.
+#[test]
+fn a_branch_passes_the_needle_of_a_soft_spring() {
+    let problem = fig12(100);
+    for (stiffness, start, end, folds) in [(20.0, 1.15, 0.65, 4), (1.0, 3.0, -3.0, 6)] {
+        let loaded = LoadedProblem::new(&problem, Device::Cantilever { stiffness }).unwrap();
+        let settings = Settings { target: Some(end), ..Settings::default() };
+        let traced = trace_loaded(&loaded, start, settings, &mut |_| ControlFlow::Continue(()));
+        let branch = traced.unwrap().branch;
+        assert_eq!(branch.stopped.reason, StopReason::Target, "{:?}", branch.stopped);
+        assert_eq!(branch.events_of(&EventKind::Fold).count(), folds);
     }
 }
 
