@@ -56,12 +56,13 @@ fn hysteresis(cycle: &CyclePictures) -> Result<String, DrawError> {
     let y = Axis::of(FORCE, values(&all, |c| &c.y), 7);
     let units = (x.unit, y.unit);
     let (way_in, way_out, leap) = (of_state(1), of_state(2), of_state(3));
-    let mut lines = Vec::new();
+    let complete = curve_lines(&cycle.complete, FAINT, units);
+    let (unstable, mut lines): (Vec<Line>, Vec<Line>) =
+        complete.into_iter().partition(|line| line.dashed);
     // where both ways are one, the way out is a rim
-    for (curve, color, width) in [(&cycle.retract, way_out, 6), (&cycle.approach, way_in, 2)] {
+    for (curve, color, width) in [(&cycle.retract, way_out, 4), (&cycle.approach, way_in, 2)] {
         lines.extend(curve_lines(curve, color, units).into_iter().map(|l| Line { width, ..l }));
     }
-    let unstable = curve_lines(&cycle.complete, FAINT, units).into_iter().filter(|l| l.dashed);
     lines.extend(unstable);
     let size = (f64::from(WIDE.0), f64::from(WIDE.1));
     let scale = (size.0 / (x.high - x.low), size.1 / (y.high - y.low));
@@ -97,6 +98,9 @@ fn hysteresis(cycle: &CyclePictures) -> Result<String, DrawError> {
     }
     let line = |color, dashed, label: &str| Entry::Line { color, dashed, label: label.to_owned() };
     let mut legend = vec![line(way_in, false, "approach"), line(way_out, false, "retract")];
+    if !cycle.jumps.is_empty() {
+        legend.push(line(FAINT, false, "not visited"));
+    }
     if !cycle.jumps.is_empty() {
         legend.push(line(leap, false, "jump"));
     }
