@@ -28,6 +28,9 @@ pub(crate) enum Command {
     Trace(TraceArguments),
     /// Follow a branch and all that leave it; write them as one diagram
     Diagram(DiagramArguments),
+    /// Close and open the plates once, with the jumps between stable states; write the path, the energy
+    /// it dissipates and pictures
+    Cycle(CycleArguments),
     /// Follow special points in two parameters; write the curves, the special points on them and a
     /// picture
     Map(MapArguments),
@@ -73,6 +76,17 @@ impl CaseArguments {
 /// Which case, and what to do with its branch.
 #[derive(Debug, Args)]
 pub(crate) struct TraceArguments {
+    /// Which case.
+    #[command(flatten)]
+    pub(crate) case: CaseArguments,
+    /// What to do with the results.
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
+}
+
+/// Which case, and what to do with its cycle.
+#[derive(Debug, Args)]
+pub(crate) struct CycleArguments {
     /// Which case.
     #[command(flatten)]
     pub(crate) case: CaseArguments,

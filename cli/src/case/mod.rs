@@ -4,6 +4,7 @@
 //! the catalogue), [`document`] parses it and lays the overrides over it, [`resolve`] checks every
 //! key and fills in defaults, and [`mod@write`] says the result as a case file again.
 
+mod device;
 pub(crate) mod document;
 pub(crate) mod error;
 mod physical;
@@ -15,6 +16,7 @@ mod write;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use device::DeviceCase;
 pub(crate) use document::Override;
 pub(crate) use error::LoadError;
 pub(crate) use physical::{PhysicalCase, Stiffness};
@@ -60,6 +62,8 @@ pub(crate) struct ContactCase {
     pub(crate) physical: Option<Box<PhysicalCase>>,
     /// The mesh.
     pub(crate) mesh: MeshCase,
+    /// What holds the plates.
+    pub(crate) device: DeviceCase,
 }
 
 /// A shell under a ring load.

@@ -14,6 +14,7 @@ pub(crate) const SHIPPED: &[(&str, &str)] = &[
     ("fig07", include_str!("../../../cases/fig07.toml")),
     ("fig12", include_str!("../../../cases/fig12.toml")),
     ("fig16", include_str!("../../../cases/fig16.toml")),
+    ("cantilever", include_str!("../../../cases/cantilever.toml")),
     ("polymer", include_str!("../../../cases/polymer.toml")),
 ];
 

@@ -61,6 +61,11 @@ fn contact(out: &mut Lines, case: &ContactCase) {
         }
     }
     mesh(out, case.mesh);
+    out.table("device");
+    out.text("kind", case.device.name());
+    if let Some(stiffness) = case.device.stiffness() {
+        out.number("stiffness", stiffness);
+    }
 }
 
 fn shell(out: &mut Lines, shell: ShellCase) {

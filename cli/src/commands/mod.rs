@@ -2,6 +2,7 @@
 
 mod check;
 mod completions;
+mod cycle;
 mod delivery;
 mod diagram;
 mod list;
@@ -19,6 +20,7 @@ pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
     match &arguments.command {
         Command::Trace(arguments) => trace::trace(arguments),
         Command::Diagram(arguments) => diagram::diagram(arguments),
+        Command::Cycle(arguments) => cycle::cycle(arguments),
         Command::Check(arguments) => check::check(arguments),
         Command::Map(arguments) => map::map(arguments),
         Command::List => list::list(),

@@ -194,6 +194,8 @@ pub(crate) struct EventRecord {
     pub(crate) kind: String,
     /// Value of the continued parameter.
     pub(crate) parameter: Option<f64>,
+    /// Plate distance, where the continued parameter is another.
+    pub(crate) z0: Option<f64>,
     /// Force.
     pub(crate) force: Option<f64>,
     /// Deformation.
@@ -212,6 +214,27 @@ pub(crate) struct EventRecord {
     pub(crate) observables: Vec<(String, f64)>,
     /// What the normal form says.
     pub(crate) form: FormRecord,
+}
+
+/// Two states of equal total potential at one value of the device's parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct MaxwellRecord {
+    /// Name of the parameter.
+    pub(crate) parameter: &'static str,
+    /// Its value.
+    pub(crate) value: f64,
+    /// Total potential of both.
+    pub(crate) potential: f64,
+    /// Plate distances.
+    pub(crate) z0: [f64; 2],
+    /// Forces.
+    pub(crate) force: [f64; 2],
+    /// Energies without the device.
+    pub(crate) energy: [f64; 2],
+    /// Unstable modes.
+    pub(crate) unstable: [Option<usize>; 2],
+    /// Estimated error of the parameter.
+    pub(crate) error_estimate: f64,
 }
 
 /// The normal form of a special point; what does not apply is `None`.
@@ -249,6 +272,8 @@ pub(crate) struct TraceResult {
     pub(crate) table: Table,
     /// The special points, in order along the branch.
     pub(crate) events: Vec<EventRecord>,
+    /// Pairs of states of equal potential; `None` where that has no meaning.
+    pub(crate) maxwell: Option<Vec<MaxwellRecord>>,
     /// Why the branch ended.
     pub(crate) stopped_because: StopReason,
     /// The same in a sentence; may be empty.

@@ -5,6 +5,7 @@
 
 mod axis;
 mod chart;
+mod cycle;
 mod data;
 mod draw;
 mod map;
@@ -14,6 +15,7 @@ mod palette;
 pub(crate) mod tests;
 
 pub(crate) use chart::DrawError;
+pub(crate) use cycle::{CyclePictures, LOOP, draw_cycle};
 pub(crate) use data::Mark;
 pub(crate) use data::{Curve, Profile, Shape};
 pub(crate) use map::{MAP, draw_map};

@@ -2,18 +2,23 @@
 
 use super::form::{StabilityColumns, certified, form};
 use super::{Observer, RunError, listen, settings};
-use crate::case::{ContactCase, Law, ResolvedCase};
-use crate::output::{ContactRow, EventRecord, Pictures, Table, TraceResult};
+use crate::case::{ContactCase, DeviceCase, Law, ResolvedCase};
+use crate::output::{ContactRow, EventRecord, MaxwellRecord, Pictures, Table, TraceResult};
 use crate::pictures::{Curve, Mark, Profile, Shape};
-use continuation::{Point, Settings, TraceError};
-use shell_contact::{ContactBranch, ContactProblem, Dimensionless, Mesh, Shell, trace_contact};
+use continuation::{Point, Problem, Settings, TraceError};
+use shell_contact::device::{MaxwellPoint, StartError, maxwell_points, trace_loaded};
+use shell_contact::{ContactBranch, ContactProblem, Device, LoadedProblem};
+use shell_contact::{Dimensionless, Mesh, Shell, trace_contact};
 use std::time::Instant;
 
 /// Samples along the meridian in pictures of shapes and profiles.
-const SAMPLES: usize = 801;
+pub(super) const SAMPLES: usize = 801;
 
 /// Longest step by default, in R0: short enough for curves that look smooth.
 const SMOOTH: f64 = 0.01;
+
+/// Fewest steps over the range of a device's parameter by default.
+const STEPS: f64 = 100.0;
 
 /// Trace a contact case.
 pub(super) fn run(
@@ -22,13 +27,73 @@ pub(super) fn run(
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
     let clock = Instant::now();
-    let problem = problem(case, contact)?;
-    let start = case.path.start;
-    let traced = trace_contact(&problem, start, path(case), &mut listen(observer))
-        .map_err(|detail| no_start(case, detail))?;
+    let problem = shell(case, contact)?;
+    let (traced, maxwell) = follow(case, device(contact), &problem, observer)?;
     let seconds = clock.elapsed().as_secs_f64();
     let pictures = pictures(&case.name, &problem, &traced);
-    Ok(TraceResult { pictures, ..result(case, &traced, seconds) })
+    Ok(TraceResult { pictures, maxwell: Some(maxwell), ..result(case, &traced, seconds) })
+}
+
+/// The branch in the device's parameter, and its Maxwell points.
+pub(super) fn follow(
+    case: &ResolvedCase,
+    device: Device,
+    problem: &ContactProblem,
+    observer: &mut Observer<'_>,
+) -> Result<(ContactBranch, Vec<MaxwellRecord>), RunError> {
+    let (start, listen) = (case.path.start, &mut listen(observer));
+    let (traced, points) = if device == Device::Grip {
+        let traced = trace_contact(problem, start, path(case), listen)
+            .map_err(|detail| no_start(case, detail))?;
+        let points = maxwell_points(problem, &traced.branch);
+        (traced, points)
+    } else {
+        let loaded = LoadedProblem::new(problem, device).map_err(|e| not_held(case, e.into()))?;
+        let traced = trace_loaded(&loaded, start, loaded_path(case), listen)
+            .map_err(|detail| not_held(case, detail))?;
+        let points = maxwell_points(&loaded, &traced.branch);
+        (traced, points)
+    };
+    Ok((traced, points.iter().map(|point| maxwell(device, point)).collect()))
+}
+
+fn maxwell(device: Device, point: &MaxwellPoint) -> MaxwellRecord {
+    MaxwellRecord {
+        parameter: device.parameter_name(),
+        value: point.parameter,
+        potential: point.potential,
+        z0: point.z0,
+        force: point.force,
+        energy: point.energy,
+        unstable: point.unstable,
+        error_estimate: point.error_estimate,
+    }
+}
+
+/// The device of a case.
+pub(super) fn device(contact: &ContactCase) -> Device {
+    match contact.device {
+        DeviceCase::Grip => Device::Grip,
+        DeviceCase::DeadLoad => Device::DeadLoad,
+        DeviceCase::Cantilever { stiffness } => Device::Cantilever { stiffness },
+    }
+}
+
+/// The tracer's settings under a device.
+pub(super) fn loaded_path(case: &ResolvedCase) -> Settings {
+    let settings = path(case);
+    if case.path.max_step.is_some() {
+        return settings;
+    }
+    // the device's parameter counts in the length of a step
+    let range = (case.path.end - case.path.start).abs();
+    let max_step = settings.max_step.map(|step| step.max(range / STEPS));
+    Settings { max_step, ..settings }
+}
+
+/// No stable state to start from under a device.
+pub(super) fn not_held(case: &ResolvedCase, detail: StartError) -> RunError {
+    RunError::NotHeld { case: case.name.clone(), start: case.path.start, detail }
 }
 
 /// The tracer's settings.
@@ -64,12 +129,25 @@ pub(super) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) 
         certified: certified(branch),
         newton_iterations: branch.statistics.newton_iterations,
         seconds,
+        maxwell: None,
         pictures: Pictures::default(),
     }
 }
 
-/// The problem that a case describes.
+/// The problem that a case describes, for what knows no device.
 pub(super) fn problem(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+) -> Result<ContactProblem, RunError> {
+    if contact.device != DeviceCase::Grip {
+        let (case, device) = (case.name.clone(), contact.device.name());
+        return Err(RunError::Device { case, device });
+    }
+    shell(case, contact)
+}
+
+/// The shell of a case, whatever holds its plates.
+pub(super) fn shell(
     case: &ResolvedCase,
     contact: &ContactCase,
 ) -> Result<ContactProblem, RunError> {
@@ -104,16 +182,18 @@ fn build(contact: &ContactCase) -> Result<ContactProblem, shell_contact::Paramet
 }
 
 /// One point in the contract's columns.
-fn row(traced: &ContactBranch, index: usize, point: &Point) -> ContactRow {
+pub(super) fn row(traced: &ContactBranch, index: usize, point: &Point) -> ContactRow {
     let branch = &traced.branch;
     let observed = |name: &str| {
         let at = branch.observables.iter().position(|n| n == name);
         at.map_or(f64::NAN, |k| point.observables[k])
     };
+    // the continued parameter, unless a device has another
+    let z0 = if branch.parameter == "z0" { point.p } else { observed("z0") };
     ContactRow {
         point: index,
-        z0: point.p,
-        deformation: traced.deformation(point.p).unwrap_or(f64::NAN),
+        z0,
+        deformation: traced.deformation(z0).unwrap_or(f64::NAN),
         force: observed("force"),
         unstable: point.unstable,
         pole_height: observed("pole_height"),
@@ -133,9 +213,13 @@ fn row(traced: &ContactBranch, index: usize, point: &Point) -> ContactRow {
 fn tabulate(traced: &ContactBranch) -> (Table, Vec<EventRecord>) {
     let branch = &traced.branch;
     let stability = StabilityColumns::of(branch);
-    let mut table = Table::contact().and(stability.titles());
+    let loaded = branch.parameter != "z0";
+    let base = branch.parameter == "base";
+    let own = base.then(|| branch.parameter.clone());
+    let mut table = Table::contact().and(own.into_iter().collect()).and(stability.titles());
     for (index, point) in branch.points.iter().enumerate() {
         let mut cells = row(traced, index, point).cells();
+        cells.extend(base.then(|| point.p.into()));
         cells.extend(stability.cells(point));
         table.push(cells);
     }
@@ -144,8 +228,9 @@ fn tabulate(traced: &ContactBranch) -> (Table, Vec<EventRecord>) {
         EventRecord {
             kind: event.kind.to_string(),
             parameter: Some(event.p),
+            z0: loaded.then_some(at.z0),
             force: Some(at.force),
-            deformation: traced.deformation(event.p),
+            deformation: traced.deformation(at.z0),
             energy_total: Some(at.energy_total),
             unstable_before: event.unstable_before,
             unstable_after: event.unstable_after,
@@ -182,17 +267,19 @@ fn pictures(title: &str, problem: &ContactProblem, traced: &ContactBranch) -> Pi
     let (mut shapes, mut film_pressure) = (Vec::new(), Vec::new());
     for index in chosen(&rows) {
         let point = &branch.points[index];
-        let parameters = problem.parameters_at(point.p);
-        let Ok(profile) = problem.profile(&point.u, &parameters, SAMPLES) else { continue };
-        let label = match traced.deformation(point.p) {
+        let z0 = rows[index].z0;
+        let parameters = problem.parameters_at(z0);
+        let u = &point.u[..problem.dim()];
+        let Ok(profile) = problem.profile(u, &parameters, SAMPLES) else { continue };
+        let label = match traced.deformation(z0) {
             Some(d) => format!("Δ/R₀ = {d:.3}"),
-            None => format!("z₀/R₀ = {:.3}", point.p),
+            None => format!("z₀/R₀ = {z0:.3}"),
         };
         shapes.push(Shape {
             label: label.clone(),
             sigma: profile.sigma.clone(),
             z: profile.z,
-            plate: point.p,
+            plate: z0,
             unstable: unstable[index],
         });
         film_pressure.push(Profile {

@@ -2,12 +2,14 @@
 //! out.
 
 mod contact;
+mod cycle;
 mod diagram;
 mod form;
 mod general;
 mod map;
 mod ring_load;
 
+pub(crate) use cycle::run_cycle;
 pub(crate) use map::run_map;
 
 use crate::case::{CatalogueEntry, PathCase, ProblemCase, ResolvedCase};
@@ -66,6 +68,45 @@ pub(crate) enum RunError {
         case: String,
         /// What happened.
         error: continuation::diagram::DiagramError,
+    },
+    /// No stable state under a device.
+    #[error("{case}: path.start = {start}: {detail}; choose another start, or another device")]
+    NotHeld {
+        /// Name of the case.
+        case: String,
+        /// The start asked for.
+        start: f64,
+        /// What happened.
+        detail: shell_contact::device::StartError,
+    },
+    /// A device where only a grip can be.
+    #[error(
+        "{case}: device.kind = \"{device}\": only trace and cycle know devices; leave out the table \
+         [device], or say --set device.kind=grip"
+    )]
+    Device {
+        /// Name of the case.
+        case: String,
+        /// The device.
+        device: &'static str,
+    },
+    /// A problem without plates.
+    #[error("{case}: problem \"{problem}\": a cycle needs plates: problem = \"contact\"")]
+    NoPlates {
+        /// Name of the case.
+        case: String,
+        /// Name of the problem.
+        problem: String,
+    },
+    /// A cycle that cannot begin.
+    #[error("{case}: path.start = {start}: {detail}; choose another start")]
+    Cycle {
+        /// Name of the case.
+        case: String,
+        /// The start asked for.
+        start: f64,
+        /// What happened.
+        detail: shell_contact::device::CycleError,
     },
     /// Not even the first point could be computed.
     #[error("{case}: path.start = {start}: {detail}; {remedy}")]
