@@ -7,6 +7,7 @@ mod diagram;
 mod list;
 mod map;
 mod progress;
+mod sweep;
 mod trace;
 
 use crate::arguments::{Arguments, CaseArguments, Command};
@@ -21,6 +22,8 @@ pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
         Command::Diagram(arguments) => diagram::diagram(arguments),
         Command::Check(arguments) => check::check(arguments),
         Command::Map(arguments) => map::map(arguments),
+        Command::Sweep(arguments) => sweep::sweep(arguments),
+        Command::Merge(arguments) => sweep::merge(arguments),
         Command::List => list::list(),
         Command::Completions { shell } => completions::completions(*shell),
     }

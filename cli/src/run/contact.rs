@@ -21,14 +21,32 @@ pub(super) fn run(
     contact: &ContactCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
+    let (problem, traced, seconds) = traced(case, contact, observer)?;
+    let pictures = pictures(&case.name, &problem, &traced);
+    Ok(TraceResult { pictures, ..result(case, &traced, seconds) })
+}
+
+/// The same without what pictures show.
+pub(super) fn run_plain(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    let (_, traced, seconds) = traced(case, contact, observer)?;
+    Ok(result(case, &traced, seconds))
+}
+
+fn traced(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    observer: &mut Observer<'_>,
+) -> Result<(ContactProblem, ContactBranch, f64), RunError> {
     let clock = Instant::now();
     let problem = problem(case, contact)?;
     let start = case.path.start;
     let traced = trace_contact(&problem, start, path(case), &mut listen(observer))
         .map_err(|detail| no_start(case, detail))?;
-    let seconds = clock.elapsed().as_secs_f64();
-    let pictures = pictures(&case.name, &problem, &traced);
-    Ok(TraceResult { pictures, ..result(case, &traced, seconds) })
+    Ok((problem, traced, clock.elapsed().as_secs_f64()))
 }
 
 /// The tracer's settings.

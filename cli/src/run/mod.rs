@@ -6,8 +6,10 @@ mod diagram;
 mod form;
 mod general;
 mod map;
+mod sweep;
 
 pub(crate) use map::run_map;
+pub(crate) use sweep::{Outcome, run_sweep};
 
 use crate::case::{CatalogueEntry, PathCase, ProblemCase, ResolvedCase};
 use crate::output::TraceResult;
@@ -101,6 +103,14 @@ pub(crate) fn run_trace(
             problem: "ring-load".to_string(),
         }),
         ProblemCase::Catalogue(problem) => general::run(case, problem, observer),
+    }
+}
+
+/// The same without what pictures show, for cases of which there are many.
+fn run_plain(case: &ResolvedCase, observer: &mut Observer<'_>) -> Result<TraceResult, RunError> {
+    match &case.problem {
+        ProblemCase::Contact(contact) => contact::run_plain(case, contact, observer),
+        _ => run_trace(case, observer),
     }
 }
 
