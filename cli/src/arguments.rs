@@ -82,6 +82,9 @@ pub(crate) struct TraceArguments {
     /// Which case.
     #[command(flatten)]
     pub(crate) case: CaseArguments,
+    /// Write report.html too, a page on which to move along the branch and look at its states
+    #[arg(long)]
+    pub(crate) report: bool,
     /// What to do with the results.
     #[command(flatten)]
     pub(crate) output: OutputArguments,
@@ -100,6 +103,9 @@ pub(crate) struct DiagramArguments {
     /// on from what is kept in DIR/unfinished
     #[arg(long)]
     pub(crate) restart: bool,
+    /// Write report.html too, a page on which to move along the branches and look at their states
+    #[arg(long)]
+    pub(crate) report: bool,
     /// What to do with the results.
     #[command(flatten)]
     pub(crate) output: OutputArguments,

@@ -7,6 +7,7 @@ mod diagram;
 mod list;
 mod map;
 mod progress;
+mod report;
 mod sweep;
 mod trace;
 

@@ -273,6 +273,17 @@ pub(crate) struct TraceResult {
     pub(crate) pictures: Pictures,
 }
 
+impl TraceResult {
+    /// The points that are special, and their kinds.
+    pub(crate) fn marked_points(&self) -> impl Iterator<Item = (usize, &str)> {
+        let column = self.table.columns().iter().position(|name| name == "event");
+        self.table.rows().iter().enumerate().filter_map(move |(point, row)| match &row[column?] {
+            Cell::Text(kind) => Some((point, kind.as_str())),
+            _ => None,
+        })
+    }
+}
+
 /// What the pictures of a trace show; a picture without data is not drawn.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Pictures {
@@ -290,4 +301,6 @@ pub(crate) struct Pictures {
     pub(crate) energies: Vec<Curve>,
     /// First observable against the parameter, for other problems; with the axes' labels.
     pub(crate) diagram: Option<(String, String, Curve)>,
+    /// States along the branch, for a report, if one was asked for.
+    pub(crate) states: Vec<report::State>,
 }

@@ -5,7 +5,7 @@ use super::{Observer, RunError, listen, settings};
 use crate::case::{ContactCase, Law, ResolvedCase};
 use crate::output::{ContactRow, EventRecord, Pictures, Table, TraceResult};
 use crate::pictures::{Curve, Mark, Profile, Shape};
-use continuation::{Point, Settings, TraceError};
+use continuation::{Branch, Point, Settings, TraceError};
 use shell_contact::{ContactBranch, ContactProblem, Dimensionless, Mesh, Shell, trace_contact};
 use std::time::Instant;
 
@@ -23,6 +23,18 @@ pub(super) fn run(
 ) -> Result<TraceResult, RunError> {
     let (problem, traced, seconds) = traced(case, contact, observer)?;
     let pictures = pictures(&case.name, &problem, &traced);
+    Ok(TraceResult { pictures, ..result(case, &traced, seconds) })
+}
+
+/// The same with the states along the branch.
+pub(super) fn run_reported(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    let (problem, traced, seconds) = traced(case, contact, observer)?;
+    let states = states(&problem, &traced.branch, traced.branch.points.len());
+    let pictures = Pictures { states, ..pictures(&case.name, &problem, &traced) };
     Ok(TraceResult { pictures, ..result(case, &traced, seconds) })
 }
 
@@ -236,7 +248,7 @@ fn pictures(title: &str, problem: &ContactProblem, traced: &ContactBranch) -> Pi
         } else {
             Vec::new()
         },
-        diagram: None,
+        ..Pictures::default()
     }
 }
 
@@ -258,4 +270,37 @@ fn chosen(rows: &[ContactRow]) -> Vec<usize> {
     }
     chosen.dedup();
     chosen
+}
+
+/// Samples along the meridian from which the points of a report are chosen.
+const FINE: usize = 601;
+/// Points of a meridian in a report, and states in all, so that it stays a file to be sent about.
+const OUTLINE: usize = 110;
+const STATES: usize = 800;
+
+/// The states along a branch for a report of `points` points in all: every one, or as many as there
+/// is room for and those at special points.
+pub(super) fn states(
+    problem: &ContactProblem,
+    branch: &Branch,
+    points: usize,
+) -> Vec<report::State> {
+    let every = points.div_ceil(STATES).max(1);
+    let last = branch.points.len().saturating_sub(1);
+    let mut states = Vec::new();
+    for (index, point) in branch.points.iter().enumerate() {
+        if index % every != 0 && index != last && point.event.is_none() {
+            continue;
+        }
+        let parameters = problem.parameters_at(point.p);
+        let Ok(profile) = problem.profile(&point.u, &parameters, FINE) else { continue };
+        let outline = report::Outline {
+            sigma: profile.sigma,
+            z: profile.z,
+            pressure: profile.disjoining_pressure,
+        };
+        let outline = outline.thinned(OUTLINE);
+        states.push(report::State { point: index, plate: point.p, outline });
+    }
+    states
 }

@@ -106,6 +106,20 @@ pub(crate) fn run_trace(
     }
 }
 
+/// The same with the states along the branch, for a report.
+///
+/// # Errors
+/// When there is no result at all.
+pub(crate) fn run_trace_reported(
+    case: &ResolvedCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    match &case.problem {
+        ProblemCase::Contact(contact) => contact::run_reported(case, contact, observer),
+        _ => run_trace(case, observer),
+    }
+}
+
 /// The same without what pictures show, for cases of which there are many.
 fn run_plain(case: &ResolvedCase, observer: &mut Observer<'_>) -> Result<TraceResult, RunError> {
     match &case.problem {
