@@ -138,7 +138,7 @@ pub(crate) struct MapArguments {
 /// Which sweep, and how to share the work.
 #[derive(Debug, Args)]
 pub(crate) struct SweepArguments {
-    /// A sweep file: a case file with tables [[vary]]
+    /// A sweep file: a case file that also says which keys vary
     #[arg(value_name = "SWEEP.toml")]
     pub(crate) sweep: PathBuf,
     /// Number of threads [default: all cores]

@@ -1,4 +1,4 @@
-//! The tables `[[vary]]`.
+//! The tables that say what varies.
 
 use super::plan::{Axis, Setting};
 use crate::case::document::{Node, Origin, Value};
