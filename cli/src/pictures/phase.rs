@@ -130,3 +130,81 @@ impl Cells {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::{CaseRecord, Status};
+    use crate::phase::Phase;
+    use crate::sweep::{Plan, Setting, Shard};
+
+    fn axis(key: &str, values: &[f64], logarithmic: bool) -> sweep::Axis {
+        let values = values.iter().map(|value| Setting::Real(*value)).collect();
+        sweep::Axis { key: key.to_owned(), logarithmic, zip: None, values }
+    }
+
+    /// A plane with these classes, in the order of the cases.
+    fn result(axes: Vec<sweep::Axis>, classes: &[Class]) -> SweepResult {
+        let record = |(case, class): (usize, &Class)| CaseRecord {
+            status: Status::Finished,
+            phase: Some(Phase {
+                class: *class,
+                folds: 0,
+                pole_film: None,
+                stiffness: None,
+                softening: None,
+                knee: None,
+            }),
+            ..CaseRecord::failed(case, String::new())
+        };
+        let plan = Plan {
+            version: String::new(),
+            name: "a < b".to_owned(),
+            shard: Shard::ALL,
+            parameter: "z0".to_owned(),
+            axes,
+            base: Vec::new(),
+        };
+        let records: Vec<CaseRecord> = classes.iter().enumerate().map(record).collect();
+        SweepResult { plan, asked: records.len(), records, interrupted: false }
+    }
+
+    #[test]
+    fn cells_meet_halfway_in_the_logarithm_and_cover_the_axis() {
+        let cells = Cells::of(&axis("k", &[1e-2, 1e-4, 1e-3], true));
+        assert_eq!(cells.cell(1e-3), Some((-3.5, -2.5)));
+        assert_eq!(cells.cell(1e-2), Some((-2.5, -1.5)));
+        assert_eq!(cells.cell(0.5), None);
+        let axis_of = cells.axis("k");
+        assert_eq!(
+            (axis_of.low, axis_of.high, axis_of.ticks.as_slice()),
+            (-4.5, -1.5, &[-4.0, -3.0, -2.0][..])
+        );
+        assert_eq!(axis_of.label(-3.0), "10⁻³");
+        let linear = Cells::of(&axis("k", &[0.0, 1.0, 3.0], false));
+        assert_eq!(linear.cell(1.0), Some((0.5, 2.0)));
+        assert_eq!(linear.cell(0.0), Some((-0.5, 0.5)));
+        let alone = Cells::of(&axis("k", &[2.0], false));
+        assert_eq!(alone.cell(2.0), Some((1.8, 2.2)));
+    }
+
+    #[test]
+    fn every_class_that_is_met_has_its_colour_and_its_word() {
+        let axes = vec![
+            axis("dimensionless.bending", &[1e-4, 1e-3], true),
+            axis("path.end", &[0.7, 0.8], false),
+        ];
+        let classes = [Class::Flat, Class::Buckles, Class::Hysteresis, Class::Buckles];
+        let svg = draw_phase(&result(axes.clone(), &classes)).unwrap();
+        for part in
+            ["stays flat", "buckles", "hysteresis", "bending stiffness", "path.end", "a &lt; b"]
+        {
+            assert!(svg.contains(part), "{part}");
+        }
+        assert!(!svg.contains("bypasses"));
+        // vermillion: one tile and its sample
+        assert_eq!(svg.matches("#D55E00").count(), 2);
+        let error = draw_phase(&result(axes[..1].to_vec(), &classes[..2])).unwrap_err();
+        assert!(error.to_string().contains("does not vary two keys"));
+    }
+}
