@@ -9,8 +9,10 @@ mod closest;
 mod commands;
 mod exit;
 mod output;
+mod phase;
 mod pictures;
 mod run;
+mod sweep;
 mod terminal;
 mod units;
 

@@ -8,8 +8,8 @@ mod device;
 pub(crate) mod document;
 pub(crate) mod error;
 mod physical;
-mod reader;
-mod resolve;
+pub(crate) mod reader;
+pub(crate) mod resolve;
 pub(crate) mod source;
 mod write;
 

@@ -573,7 +573,7 @@ impl<'a> Resolver<'a> {
 }
 
 /// The nearest name that is fit for a folder.
-pub(super) fn plain_name(text: &str) -> String {
+pub(crate) fn plain_name(text: &str) -> String {
     let awkward = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':');
     let name = text.trim().trim_start_matches('.').replace(awkward, "_");
     if name.is_empty() { "case".to_string() } else { name }

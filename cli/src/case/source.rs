@@ -66,7 +66,11 @@ pub(crate) fn load_text(
     resolve(file, name, &tree, catalogue).map_err(LoadError::Invalid)
 }
 
-fn read(path: &Path) -> Result<String, LoadError> {
+/// The text of a file.
+///
+/// # Errors
+/// When it cannot be read, is too long, or is no text.
+pub(crate) fn read(path: &Path) -> Result<String, LoadError> {
     let file = path.display().to_string();
     let unreadable = |source: std::io::Error| match source.kind() {
         ErrorKind::NotFound => LoadError::Missing { file: file.clone() },

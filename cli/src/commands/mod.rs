@@ -8,6 +8,8 @@ mod diagram;
 mod list;
 mod map;
 mod progress;
+mod report;
+mod sweep;
 mod trace;
 
 use crate::arguments::{Arguments, CaseArguments, Command};
@@ -23,6 +25,8 @@ pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
         Command::Cycle(arguments) => cycle::cycle(arguments),
         Command::Check(arguments) => check::check(arguments),
         Command::Map(arguments) => map::map(arguments),
+        Command::Sweep(arguments) => sweep::sweep(arguments),
+        Command::Merge(arguments) => sweep::merge(arguments),
         Command::List => list::list(),
         Command::Completions { shell } => completions::completions(*shell),
     }

@@ -9,6 +9,7 @@ mod map;
 mod number;
 mod result;
 mod summary;
+mod sweep;
 mod table;
 
 #[cfg(test)]
@@ -25,4 +26,8 @@ pub(crate) use map::{MapCurve, MapPoint, MapResult, map_json, map_summary};
 pub(crate) use result::{Cell, ContactRow, EventRecord, FormRecord, MaxwellRecord, Table};
 pub(crate) use result::{Pictures, TraceResult};
 pub(crate) use summary::summary;
+pub(crate) use sweep::{CaseRecord, Kept, Status, Store, StoreError, SweepResult, events_table};
+pub(crate) use sweep::{
+    of_one_sweep, phase_csv, sweep_json, sweep_summary, write_curves, write_events,
+};
 pub(crate) use table::branch_csv;

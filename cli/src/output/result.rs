@@ -2,17 +2,22 @@
 
 use crate::pictures::{Curve, Profile, Shape};
 use continuation::StopReason;
+use serde::{Deserialize, Serialize};
 
 /// One cell of a table.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Cell {
     /// A number; anything but a finite one is written as an empty cell.
+    #[serde(rename = "r")]
     Real(f64),
     /// A count.
+    #[serde(rename = "n")]
     Count(usize),
     /// A word.
+    #[serde(rename = "t")]
     Text(String),
     /// Not defined.
+    #[serde(rename = "e")]
     Empty,
 }
 
@@ -47,7 +52,7 @@ impl From<&str> for Cell {
 }
 
 /// The points of a branch: named columns and rows in order along the branch.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Table {
     columns: Vec<String>,
     rows: Vec<Vec<Cell>>,
@@ -77,6 +82,19 @@ impl Table {
     pub(crate) fn and(mut self, columns: Vec<String>) -> Self {
         self.columns.extend(columns);
         self
+    }
+
+    /// The numbers of a column, NaN where there is none; empty without such a column.
+    pub(crate) fn numbers(&self, column: &str) -> Vec<f64> {
+        let Some(at) = self.columns.iter().position(|name| name == column) else {
+            return Vec::new();
+        };
+        let number = |row: &Vec<Cell>| match row[at] {
+            Cell::Real(value) => value,
+            Cell::Count(count) => count as f64,
+            _ => f64::NAN,
+        };
+        self.rows.iter().map(number).collect()
     }
 
     /// Add a row; a short one is filled up with empty cells, what is too long is cut.
@@ -290,6 +308,17 @@ pub(crate) struct TraceResult {
     pub(crate) pictures: Pictures,
 }
 
+impl TraceResult {
+    /// The points that are special, and their kinds.
+    pub(crate) fn marked_points(&self) -> impl Iterator<Item = (usize, &str)> {
+        let column = self.table.columns().iter().position(|name| name == "event");
+        self.table.rows().iter().enumerate().filter_map(move |(point, row)| match &row[column?] {
+            Cell::Text(kind) => Some((point, kind.as_str())),
+            _ => None,
+        })
+    }
+}
+
 /// What the pictures of a trace show; a picture without data is not drawn.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Pictures {
@@ -307,4 +336,6 @@ pub(crate) struct Pictures {
     pub(crate) energies: Vec<Curve>,
     /// First observable against the parameter, for other problems; with the axes' labels.
     pub(crate) diagram: Option<(String, String, Curve)>,
+    /// States along the branch, for a report, if one was asked for.
+    pub(crate) states: Vec<report::State>,
 }

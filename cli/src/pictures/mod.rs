@@ -10,6 +10,7 @@ mod data;
 mod draw;
 mod map;
 mod palette;
+mod phase;
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -19,6 +20,7 @@ pub(crate) use cycle::{CyclePictures, LOOP, draw_cycle};
 pub(crate) use data::Mark;
 pub(crate) use data::{Curve, Profile, Shape};
 pub(crate) use map::{MAP, draw_map};
+pub(crate) use phase::{PHASE, draw_phase};
 
 use crate::output::{DiagramResult, Pictures};
 

@@ -5,7 +5,7 @@ use super::{Observer, RunError, listen, settings};
 use crate::case::{ContactCase, DeviceCase, Law, ResolvedCase};
 use crate::output::{ContactRow, EventRecord, MaxwellRecord, Pictures, Table, TraceResult};
 use crate::pictures::{Curve, Mark, Profile, Shape};
-use continuation::{Point, Problem, Settings, TraceError};
+use continuation::{Branch, Point, Problem, Settings, TraceError};
 use shell_contact::device::{MaxwellPoint, StartError, maxwell_points, trace_loaded};
 use shell_contact::{ContactBranch, ContactProblem, Device, LoadedProblem};
 use shell_contact::{Dimensionless, Mesh, Shell, trace_contact};
@@ -26,12 +26,50 @@ pub(super) fn run(
     contact: &ContactCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
+    let Traced { problem, branch, maxwell, seconds } = traced(case, contact, observer)?;
+    let pictures = pictures(&case.name, &problem, &branch);
+    Ok(TraceResult { pictures, maxwell: Some(maxwell), ..result(case, &branch, seconds) })
+}
+
+/// The same with the states along the branch.
+pub(super) fn run_reported(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    let Traced { problem, branch, maxwell, seconds } = traced(case, contact, observer)?;
+    let states = states(&problem, &branch.branch, branch.branch.points.len());
+    let pictures = Pictures { states, ..pictures(&case.name, &problem, &branch) };
+    Ok(TraceResult { pictures, maxwell: Some(maxwell), ..result(case, &branch, seconds) })
+}
+
+/// The same without what pictures show.
+pub(super) fn run_plain(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    let Traced { branch, maxwell, seconds, .. } = traced(case, contact, observer)?;
+    Ok(TraceResult { maxwell: Some(maxwell), ..result(case, &branch, seconds) })
+}
+
+/// A branch under the case's device.
+struct Traced {
+    problem: ContactProblem,
+    branch: ContactBranch,
+    maxwell: Vec<MaxwellRecord>,
+    seconds: f64,
+}
+
+fn traced(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    observer: &mut Observer<'_>,
+) -> Result<Traced, RunError> {
     let clock = Instant::now();
     let problem = shell(case, contact)?;
-    let (traced, maxwell) = follow(case, device(contact), &problem, observer)?;
-    let seconds = clock.elapsed().as_secs_f64();
-    let pictures = pictures(&case.name, &problem, &traced);
-    Ok(TraceResult { pictures, maxwell: Some(maxwell), ..result(case, &traced, seconds) })
+    let (branch, maxwell) = follow(case, device(contact), &problem, observer)?;
+    Ok(Traced { problem, branch, maxwell, seconds: clock.elapsed().as_secs_f64() })
 }
 
 /// The branch in the device's parameter, and its Maxwell points.
@@ -309,7 +347,7 @@ fn pictures(title: &str, problem: &ContactProblem, traced: &ContactBranch) -> Pi
         } else {
             Vec::new()
         },
-        diagram: None,
+        ..Pictures::default()
     }
 }
 
@@ -331,4 +369,37 @@ fn chosen(rows: &[ContactRow]) -> Vec<usize> {
     }
     chosen.dedup();
     chosen
+}
+
+/// Samples along the meridian from which the points of a report are chosen.
+const FINE: usize = 601;
+/// Points of a meridian in a report, and states in all, so that it stays a file to be sent about.
+const OUTLINE: usize = 110;
+const STATES: usize = 800;
+
+/// The states along a branch for a report of `points` points in all: every one, or as many as there
+/// is room for and those at special points.
+pub(super) fn states(
+    problem: &ContactProblem,
+    branch: &Branch,
+    points: usize,
+) -> Vec<report::State> {
+    let every = points.div_ceil(STATES).max(1);
+    let last = branch.points.len().saturating_sub(1);
+    let mut states = Vec::new();
+    for (index, point) in branch.points.iter().enumerate() {
+        if index % every != 0 && index != last && point.event.is_none() {
+            continue;
+        }
+        let parameters = problem.parameters_at(point.p);
+        let Ok(profile) = problem.profile(&point.u, &parameters, FINE) else { continue };
+        let outline = report::Outline {
+            sigma: profile.sigma,
+            z: profile.z,
+            pressure: profile.disjoining_pressure,
+        };
+        let outline = outline.thinned(OUTLINE);
+        states.push(report::State { point: index, plate: point.p, outline });
+    }
+    states
 }

@@ -108,12 +108,14 @@ impl Visitor for Exploration<'_, '_> {
     }
 }
 
-/// Explore the diagram of a case, from what was kept of it.
+/// Explore the diagram of a case, from what was kept of it; `reported` also takes the states along
+/// the branches, for a report.
 ///
 /// # Errors
 /// When there is no result at all, or what was kept is of another diagram.
 pub(crate) fn run_diagram(
     case: &ResolvedCase,
+    reported: bool,
     saved: Saved,
     keep: &mut dyn Keep,
     observer: &mut Observer<'_>,
@@ -147,6 +149,7 @@ pub(crate) fn run_diagram(
                 error => RunError::Diagram { case: case.name.clone(), error },
             })?;
             let mut zero = None;
+            let points = diagram.branches.iter().map(|one| one.branch.points.len()).sum();
             Ok(result(
                 case,
                 diagram,
@@ -156,7 +159,11 @@ pub(crate) fn run_diagram(
                     let traced = ContactBranch::new(branch, zero);
                     zero = traced.zero_force;
                     let curve = curve(&traced.branch, "force");
-                    (contact::result(case, &traced, 0.0), curve)
+                    let mut result = contact::result(case, &traced, 0.0);
+                    if reported {
+                        result.pictures.states = contact::states(&problem, &traced.branch, points);
+                    }
+                    (result, curve)
                 },
             ))
         }

@@ -8,9 +8,11 @@ mod form;
 mod general;
 mod map;
 mod ring_load;
+mod sweep;
 
 pub(crate) use cycle::run_cycle;
 pub(crate) use map::run_map;
+pub(crate) use sweep::{Outcome, run_sweep};
 
 use crate::case::{CatalogueEntry, PathCase, ProblemCase, ResolvedCase};
 use crate::output::TraceResult;
@@ -140,6 +142,28 @@ pub(crate) fn run_trace(
         ProblemCase::Contact(contact) => contact::run(case, contact, observer),
         ProblemCase::RingLoad(ring) => ring_load::run(case, ring, observer),
         ProblemCase::Catalogue(problem) => general::run(case, problem, observer),
+    }
+}
+
+/// The same with the states along the branch, for a report.
+///
+/// # Errors
+/// When there is no result at all.
+pub(crate) fn run_trace_reported(
+    case: &ResolvedCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    match &case.problem {
+        ProblemCase::Contact(contact) => contact::run_reported(case, contact, observer),
+        _ => run_trace(case, observer),
+    }
+}
+
+/// The same without what pictures show, for cases of which there are many.
+fn run_plain(case: &ResolvedCase, observer: &mut Observer<'_>) -> Result<TraceResult, RunError> {
+    match &case.problem {
+        ProblemCase::Contact(contact) => contact::run_plain(case, contact, observer),
+        _ => run_trace(case, observer),
     }
 }
 

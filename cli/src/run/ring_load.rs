@@ -168,6 +168,7 @@ pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> Trac
         EventRecord {
             kind: event.kind.to_string(),
             parameter: Some(event.p),
+            z0: None,
             force: observed("force"),
             deformation: observed("ring_height").map(|z| 1.0 - z),
             energy_total: observed("energy_total"),
@@ -186,6 +187,7 @@ pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> Trac
         case: case.name.clone(),
         parameter: branch.parameter.clone(),
         events: events.collect(),
+        maxwell: None,
         table,
         stopped_because: branch.stopped.reason,
         stopped_detail: branch.stopped.detail.clone(),
