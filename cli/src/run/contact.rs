@@ -391,15 +391,18 @@ pub(super) fn states(
         if index % every != 0 && index != last && point.event.is_none() {
             continue;
         }
-        let parameters = problem.parameters_at(point.p);
-        let Ok(profile) = problem.profile(&point.u, &parameters, FINE) else { continue };
+        // under a device the plate's distance is the last unknown
+        let plate = point.u.get(problem.dim()).copied().unwrap_or(point.p);
+        let parameters = problem.parameters_at(plate);
+        let u = &point.u[..problem.dim()];
+        let Ok(profile) = problem.profile(u, &parameters, FINE) else { continue };
         let outline = report::Outline {
             sigma: profile.sigma,
             z: profile.z,
             pressure: profile.disjoining_pressure,
         };
         let outline = outline.thinned(OUTLINE);
-        states.push(report::State { point: index, plate: point.p, outline });
+        states.push(report::State { point: index, plate, outline });
     }
     states
 }
