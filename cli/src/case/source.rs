@@ -16,6 +16,7 @@ pub(crate) const SHIPPED: &[(&str, &str)] = &[
     ("fig16", include_str!("../../../cases/fig16.toml")),
     ("cantilever", include_str!("../../../cases/cantilever.toml")),
     ("polymer", include_str!("../../../cases/polymer.toml")),
+    ("ring-load", include_str!("../../../cases/ring-load.toml")),
 ];
 
 /// Case files are small; what is longer is something else.

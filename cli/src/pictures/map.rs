@@ -43,5 +43,15 @@ pub(crate) fn draw_map(result: &MapResult) -> Result<String, DrawError> {
         "alpha" => "contact angle α (degrees)",
         other => other,
     };
-    draw::map(&result.case, &result.key, y, &curves)
+    let x = match result.key.as_str() {
+        _ if !matches!(result.parameter.as_str(), "z0" | "alpha") => &result.key,
+        "adhesion" => "adhesion w₀/χ",
+        "bending" => "bending stiffness k_b/(χR₀²)",
+        "pressure" => "ambient pressure P_A R₀/χ",
+        "film" => "film length δ_A/R₀",
+        "surface_tension" => "surface tension γ_BW/χ",
+        "moment" => "moment at the ring m/(χR₀²)",
+        other => other,
+    };
+    draw::map(&result.case, x, y, &curves)
 }
