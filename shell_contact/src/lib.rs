@@ -34,6 +34,7 @@ mod dual;
 pub mod energy;
 pub mod film;
 pub mod gas;
+pub mod identify;
 pub mod membrane;
 pub mod meridian;
 pub mod observables;
