@@ -9,6 +9,7 @@ mod data;
 mod draw;
 mod map;
 mod palette;
+mod sheet;
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -17,6 +18,7 @@ pub(crate) use chart::DrawError;
 pub(crate) use data::Mark;
 pub(crate) use data::{Curve, Profile, Shape};
 pub(crate) use map::{MAP, draw_map};
+pub(crate) use sheet::{BOLD, FAMILY, FONT, Ink, Panel, PanelLine, Pen, PngError, Sheet, png};
 
 use crate::output::{DiagramResult, Pictures};
 
