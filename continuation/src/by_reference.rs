@@ -63,6 +63,15 @@ impl<P: Problem + ?Sized> Problem for &P {
         (**self).mass(m)
     }
 
+    fn energy_hessian(
+        &self,
+        u: &[f64],
+        p: &[f64],
+        h: &mut Self::Jacobian,
+    ) -> Result<(), EvalError> {
+        (**self).energy_hessian(u, p, h)
+    }
+
     fn multipliers(&self) -> usize {
         (**self).multipliers()
     }

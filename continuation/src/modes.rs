@@ -50,6 +50,9 @@ pub fn modes<P: Problem>(
     let mut r = vec![0.0; problem.dim()];
     problem.linearise(u, p, &mut r, &mut jacobian)?;
     check_finite(&r)?;
+    if problem.stability() == Stability::SeparateHessian {
+        problem.energy_hessian(u, p, &mut jacobian)?;
+    }
     let floor = f64::EPSILON * jacobian.norm();
     let facts = jacobian.factor(floor);
     let mut solver = ModeSolver::new(problem, count);
@@ -87,12 +90,17 @@ pub(crate) struct ModeSolver<P: Problem> {
 
 impl<P: Problem> ModeSolver<P> {
     pub(crate) fn new(problem: &P, wanted: usize) -> Self {
+        // from here on the matrices that come in are the Hessian
+        let sense = match problem.stability() {
+            Stability::SeparateHessian => Stability::EnergyHessian,
+            sense => sense,
+        };
         let mut mass = problem.new_jacobian();
         mass.set_zero();
         let mass = problem.mass(&mut mass).then_some(mass);
         ModeSolver {
             wanted: wanted.min(problem.dim()),
-            sense: problem.stability(),
+            sense,
             multipliers: problem.multipliers(),
             mass,
             lanczos: None,

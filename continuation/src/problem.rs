@@ -46,6 +46,10 @@ pub enum EvalError {
 pub enum Stability {
     /// The Jacobian is the Hessian of an energy: negative eigenvalues are unstable.
     EnergyHessian,
+    /// As [`Stability::EnergyHessian`], but the Hessian is not the Jacobian:
+    /// [`Problem::energy_hessian`] gives it. A mode may become unstable where the Jacobian is regular
+    /// ([`EventKind::StabilityChange`]).
+    SeparateHessian,
     /// The problem is `du/dt = f(u, p)`: eigenvalues with positive real part are unstable.
     Dynamics,
     /// The problem says nothing about stability.
@@ -138,6 +142,21 @@ pub trait Problem {
     fn mass(&self, m: &mut Self::Jacobian) -> bool {
         let _ = m;
         false
+    }
+
+    /// The matrix whose negative eigenvalues are unstable where it is not the Jacobian
+    /// ([`Stability::SeparateHessian`]); symmetric, and of the Jacobian's pattern. `h` holds anything
+    /// before. The default is the Jacobian.
+    ///
+    /// # Errors
+    /// When it has no value there.
+    fn energy_hessian(
+        &self,
+        u: &[f64],
+        p: &[f64],
+        h: &mut Self::Jacobian,
+    ) -> Result<(), EvalError> {
+        self.jacobian(u, p, h)
     }
 
     /// Number of negative eigenvalues that multipliers add to an energy Hessian; they are no

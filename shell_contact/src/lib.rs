@@ -33,6 +33,7 @@ pub mod density;
 mod dual;
 pub mod energy;
 pub mod film;
+pub mod forward;
 pub mod gas;
 pub mod identify;
 pub mod membrane;
@@ -40,6 +41,7 @@ pub mod meridian;
 pub mod observables;
 pub mod params;
 pub mod quadrature;
+pub mod ring_load;
 pub mod scalar;
 pub mod spline;
 pub mod trace;
@@ -51,4 +53,5 @@ pub use observables::{Observation, Profile};
 pub use params::{
     Dimensionless, Law, ParameterError, Physical, Scales, Shell, Stiffness, default_gas_exponent,
 };
+pub use ring_load::{RingGroups, RingLoadProblem};
 pub use trace::{ContactBranch, force_watches, trace_contact};

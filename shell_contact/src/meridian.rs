@@ -48,6 +48,11 @@ pub struct Local {
 }
 
 impl Local {
+    /// The coefficients of `u` and of `w` as differences to the second one, and that one.
+    pub(crate) fn parts(&self) -> [([f64; 4], f64); 2] {
+        [(self.u, self.u_base), (self.w, self.w_base)]
+    }
+
     /// Largest coefficient of `w`, a bound for `w` in the element.
     #[inline(always)]
     pub fn w_bound(&self) -> f64 {
@@ -93,6 +98,7 @@ pub struct Mesh {
     knots: Knots,
     gauss_points: usize,
     cells_per_element: usize,
+    rule: Vec<(f64, f64)>,
     cells: Vec<Cell>,
     cos_knots: Vec<f64>,
     mass: SymmetricBand,
@@ -143,6 +149,11 @@ impl Mesh {
         Ok(Mesh::build(Knots::new(knots)?, DEFAULT_GAUSS_POINTS))
     }
 
+    /// [`Knots::trusted`].
+    pub(crate) fn from_trusted(elements: usize, f: impl Fn(usize) -> f64) -> Mesh {
+        Mesh::build(Knots::trusted(elements, f), DEFAULT_GAUSS_POINTS)
+    }
+
     /// The same knots with another number of Gauss points per element, 2 to 8.
     ///
     /// # Errors
@@ -160,42 +171,64 @@ impl Mesh {
     }
 
     fn build(knots: Knots, gauss_points: usize) -> Mesh {
-        let rule = gauss_legendre(gauss_points);
         let cells_per_element = gauss_points.div_ceil(WIDTH);
-        let mut cells = Vec::with_capacity(knots.elements() * cells_per_element);
-        for e in 0..knots.elements() {
-            let (start, length) = (knots.at(e), knots.at(e + 1) - knots.at(e));
-            for group in 0..cells_per_element {
-                let mut cell = Cell {
-                    basis: [[Lanes::ZERO; 4]; 3],
-                    weight: Lanes::ZERO,
-                    sin: Lanes::ZERO,
-                    cos: Lanes::ZERO,
-                    csc: Lanes::ZERO,
-                };
-                for lane in 0..WIDTH {
-                    let g = group * WIDTH + lane;
-                    let (x, weight) = rule[g.min(gauss_points - 1)];
-                    let s = start + length * x;
-                    let basis = knots.basis(e, s);
-                    for k in 0..3 {
-                        for j in 0..4 {
-                            cell.basis[k][j].0[lane] = basis[k][j];
-                        }
-                    }
-                    cell.weight.0[lane] = if g < gauss_points { weight * length } else { 0.0 };
-                    cell.sin.0[lane] = s.sin();
-                    cell.cos.0[lane] = s.cos();
-                    cell.csc.0[lane] = 1.0 / s.sin();
-                }
-                cells.push(cell);
-            }
-        }
+        let empty = Cell {
+            basis: [[Lanes::ZERO; 4]; 3],
+            weight: Lanes::ZERO,
+            sin: Lanes::ZERO,
+            cos: Lanes::ZERO,
+            csc: Lanes::ZERO,
+        };
+        let cells = vec![empty; knots.elements() * cells_per_element];
         let mass = SymmetricBand::new(2 * knots.elements(), HALF_BANDWIDTH);
-        let cos_knots = (0..=knots.elements()).map(|j| knots.at(j).cos()).collect();
-        let mut mesh = Mesh { knots, gauss_points, cells_per_element, cells, cos_knots, mass };
+        let cos_knots = vec![0.0; knots.elements() + 1];
+        let rule = gauss_legendre(gauss_points);
+        let mut mesh =
+            Mesh { knots, gauss_points, cells_per_element, rule, cells, cos_knots, mass };
+        mesh.fill();
         mesh.assemble_mass();
         mesh
+    }
+
+    /// Computes the cells from the knots.
+    fn fill(&mut self) {
+        let Mesh { knots, gauss_points, cells_per_element, rule, cells, cos_knots, .. } = self;
+        for (j, cos) in cos_knots.iter_mut().enumerate() {
+            *cos = knots.at(j).cos();
+        }
+        for (index, cell) in cells.iter_mut().enumerate() {
+            let (e, group) = (index / *cells_per_element, index % *cells_per_element);
+            let (start, length) = (knots.at(e), knots.at(e + 1) - knots.at(e));
+            for lane in 0..WIDTH {
+                let g = group * WIDTH + lane;
+                let (x, weight) = rule[g.min(*gauss_points - 1)];
+                let s = start + length * x;
+                // nothing is summed over an element of no length
+                let basis = if length > 0.0 { knots.basis(e, s) } else { [[0.0; 4]; 4] };
+                for k in 0..3 {
+                    for j in 0..4 {
+                        cell.basis[k][j].0[lane] = basis[k][j];
+                    }
+                }
+                cell.weight.0[lane] = if g < *gauss_points { weight * length } else { 0.0 };
+                let (sin, cos) = s.sin_cos();
+                cell.sin.0[lane] = sin;
+                cell.cos.0[lane] = cos;
+                cell.csc.0[lane] = 1.0 / sin;
+            }
+        }
+    }
+
+    /// Moves the knots to `f(0), …, f(N)` ([`Knots::trusted`]), and all that follows from them but the mass
+    /// matrix, which stays that of the mesh as it was made. Allocates nothing.
+    pub(crate) fn move_knots(&mut self, f: impl Fn(usize) -> f64) {
+        self.knots.move_to(f);
+        self.fill();
+    }
+
+    /// Points in `[0, 1]` and weights of the Gauss rule of an element.
+    pub(crate) fn rule(&self) -> &[(f64, f64)] {
+        &self.rule
     }
 
     fn assemble_mass(&mut self) {

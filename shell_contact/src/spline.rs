@@ -9,6 +9,7 @@
 //! `w_0, u_1, w_1, …, u_N`, they give `2N` unknowns and half-bandwidth 7.
 
 use crate::params::ParameterError;
+use crate::scalar::Scalar;
 use std::f64::consts::FRAC_PI_2;
 
 /// Half-bandwidth of matrices over the interleaved coefficients.
@@ -25,6 +26,41 @@ pub enum Component {
 
 /// Values and derivatives of the four basis functions of an element: `[derivative][function]`.
 pub type Basis = [[f64; 4]; 4];
+
+/// The four functions of the element between the knots `t(0)` and `t(1)`, which depend on
+/// `t(−2), …, t(3)`, and three derivatives, at `s`.
+pub(crate) fn basis_over<T: Scalar>(t: impl Fn(isize) -> T, s: T) -> [[T; 4]; 4] {
+    let zero = T::constant(0.0);
+    // de Boor's triangle: degree d functions on t_{e-d}.., four entries at most
+    let mut triangle = [[zero; 4]; 4];
+    triangle[0][0] = T::constant(1.0);
+    for d in 1..=3_usize {
+        for r in 0..d {
+            let (right, left) = (t(r as isize + 1), t(r as isize + 1 - d as isize));
+            let share = triangle[d - 1][r] / (right - left);
+            triangle[d][r] = triangle[d][r] + (right - s) * share;
+            triangle[d][r + 1] = triangle[d][r + 1] + (s - left) * share;
+        }
+    }
+    let mut out = [[zero; 4]; 4];
+    out[0] = triangle[3];
+    // derivative k: differentiate k times from degree 3 - k
+    for k in 1..=3_usize {
+        let mut row = triangle[3 - k];
+        for d in 4 - k..=3 {
+            let mut next = [zero; 4];
+            for r in 0..d {
+                let width = t(r as isize + 1) - t(r as isize + 1 - d as isize);
+                let slope = row[r] * d as f64 / width;
+                next[r] = next[r] - slope;
+                next[r + 1] = next[r + 1] + slope;
+            }
+            row = next;
+        }
+        out[k] = row;
+    }
+    out
+}
 
 /// The knots, continued by reflection.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,13 +95,15 @@ impl Knots {
         if (knots[elements] - FRAC_PI_2).abs() > 1e-12 {
             return Err(ParameterError::Knots { at: elements, value: knots[elements] });
         }
-        let mut extended = Vec::with_capacity(elements + 7);
-        extended.extend((1..=3).rev().map(|k| -knots[k]));
-        extended.extend_from_slice(knots);
-        extended[3] = 0.0;
-        extended[3 + elements] = FRAC_PI_2;
-        extended.extend((1..=3).map(|k| 2.0 * FRAC_PI_2 - knots[elements - k]));
-        Ok(Knots { extended, elements })
+        Ok(Knots::trusted(elements, |j| knots[j]))
+    }
+
+    /// Knots `f(0), …, f(N)` that are valid, or equal in pairs away from the ends: between those lies
+    /// an element of no length, and the spline's second derivative may jump there.
+    pub(crate) fn trusted(elements: usize, f: impl Fn(usize) -> f64) -> Knots {
+        let mut knots = Knots { extended: vec![0.0; elements + 7], elements };
+        knots.move_to(f);
+        knots
     }
 
     /// Number of elements `N`.
@@ -87,36 +125,21 @@ impl Knots {
     /// The functions `B_{e−1}, …, B_{e+2}` and their first three derivatives at `S` in element
     /// `e` (or on the continuation of its polynomials).
     pub fn basis(&self, e: usize, s: f64) -> Basis {
-        let t = |k: isize| self.extended[(e as isize + 3 + k) as usize];
-        // de Boor's triangle: degree d functions on t_{e-d}.., four entries at most
-        let mut triangle = [[0.0; 4]; 4];
-        triangle[0][0] = 1.0;
-        for d in 1..=3_usize {
-            for r in 0..d {
-                let (right, left) = (t(r as isize + 1), t(r as isize + 1 - d as isize));
-                let share = triangle[d - 1][r] / (right - left);
-                triangle[d][r] += (right - s) * share;
-                triangle[d][r + 1] += (s - left) * share;
-            }
+        basis_over(|k| self.extended[(e as isize + 3 + k) as usize], s)
+    }
+
+    /// Moves the knots to `f(0), …, f(N)`, which are trusted to be valid; allocates nothing.
+    pub(crate) fn move_to(&mut self, f: impl Fn(usize) -> f64) {
+        let n = self.elements;
+        for j in 0..=n {
+            self.extended[3 + j] = f(j);
         }
-        let mut out = [[0.0; 4]; 4];
-        out[0] = triangle[3];
-        // derivative k: differentiate k times from degree 3 - k
-        for k in 1..=3_usize {
-            let mut row = triangle[3 - k];
-            for d in 4 - k..=3 {
-                let mut next = [0.0; 4];
-                for r in 0..d {
-                    let width = t(r as isize + 1) - t(r as isize + 1 - d as isize);
-                    let slope = d as f64 * row[r] / width;
-                    next[r] -= slope;
-                    next[r + 1] += slope;
-                }
-                row = next;
-            }
-            out[k] = row;
+        self.extended[3] = 0.0;
+        self.extended[3 + n] = FRAC_PI_2;
+        for k in 1..=3 {
+            self.extended[3 - k] = -self.extended[3 + k];
+            self.extended[3 + n + k] = 2.0 * FRAC_PI_2 - self.extended[3 + n - k];
         }
-        out
     }
 
     /// Where coefficient `j ∈ −1, …, N+1` of a component stands among the unknowns, with its sign;

@@ -13,6 +13,9 @@ pub enum EventKind {
     BranchPoint,
     /// A pair of complex eigenvalues crosses the imaginary axis.
     Hopf,
+    /// A mode becomes unstable, or stable, where the Jacobian is regular
+    /// ([`crate::Stability::SeparateHessian`]).
+    StabilityChange,
     /// Two folds meet and vanish: the quadratic coefficient of a fold is zero.
     Cusp,
     /// A double eigenvalue zero with one eigenvector: a fold and a Hopf point meet.
@@ -43,6 +46,7 @@ impl fmt::Display for EventKind {
             EventKind::Fold => write!(f, "fold"),
             EventKind::BranchPoint => write!(f, "branch-point"),
             EventKind::Hopf => write!(f, "hopf"),
+            EventKind::StabilityChange => write!(f, "stability-change"),
             EventKind::Cusp => write!(f, "cusp"),
             EventKind::BogdanovTakens => write!(f, "bogdanov-takens"),
             EventKind::ZeroHopf => write!(f, "zero-hopf"),

@@ -10,7 +10,7 @@ use crate::linalg::{Arrow, Matrix, max_abs};
 use crate::modes::ModeSolver;
 use crate::problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints, Stability};
 use crate::settings::Settings;
-use crate::step::dot;
+use crate::step::{dot, hessian_inertia};
 use crate::tracer::Progress;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -463,6 +463,12 @@ impl<P: Problem> SpecialPoints for FoldCurve<'_, P> {
         let multipliers = problem.multipliers();
         match problem.stability() {
             Stability::None => return Ok(Others::default()),
+            Stability::SeparateHessian => {
+                let mut hessian = problem.new_jacobian();
+                let inertia = hessian_inertia(problem, &x[..problem.dim()], p, &mut hessian);
+                let unstable = inertia.map(|(negative, _)| negative.saturating_sub(multipliers));
+                return Ok(Others { unstable, certified: inertia.is_some(), values: Vec::new() });
+            }
             Stability::EnergyHessian if work.null.negative.is_some() => {
                 let unstable = work.null.negative.map(|n| n.saturating_sub(multipliers));
                 return Ok(Others { unstable, certified: true, values: Vec::new() });

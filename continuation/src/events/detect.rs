@@ -14,6 +14,8 @@ pub(crate) enum Candidate {
     BranchPoint { kernel: usize },
     /// The real part of a complex pair of eigenvalues changes sign.
     Hopf,
+    /// The number of unstable modes passes this level where the Jacobian is regular.
+    Stability { level: f64 },
     /// On a curve of special points, a real eigenvalue beside the critical ones passes zero.
     RealEigenvalue,
     /// Observable `observable` crosses `level`.
@@ -42,6 +44,7 @@ impl Candidate {
             Candidate::Fold => x.tp,
             Candidate::Hopf => x.pair,
             Candidate::RealEigenvalue => x.real,
+            Candidate::Stability { level } => x.unstable.map_or(f64::NAN, |n| n as f64 - level),
             Candidate::BranchPoint { .. } => f64::from(x.orientation * orientation),
             Candidate::Value { observable, level, .. } => x.values[observable] - level,
             Candidate::Extremum { observable } => x.slopes[observable],
@@ -73,6 +76,8 @@ pub(crate) struct Detector {
     found: Vec<Candidate>,
     // set where the branch consists of special points of another problem
     extended: Option<Beside>,
+    // whether stability is read from another matrix than the Jacobian
+    separate: bool,
 }
 
 /// Which eigenvalues beside the critical ones make an event when they cross the imaginary axis.
@@ -133,7 +138,13 @@ impl Detector {
             }
         }
         let found = Vec::with_capacity(watched.len() + 2);
-        Ok(Detector { watched, magnitude: vec![0.0; observables.len()], found, extended })
+        let magnitude = vec![0.0; observables.len()];
+        Ok(Detector { watched, magnitude, found, extended, separate: false })
+    }
+
+    /// Says whether stability is read from another matrix than the Jacobian.
+    pub(crate) fn with_separate_stability(self, separate: bool) -> Self {
+        Detector { separate, ..self }
     }
 
     /// The observables that are watched.
@@ -197,6 +208,9 @@ impl Detector {
             if !vertical {
                 self.detect_crossings(a, b, fold, final_say)?;
             }
+            if self.separate {
+                self.detect_stability(a, b, final_say)?;
+            }
         }
         for k in 0..self.watched.len() {
             let candidate = self.watched[k];
@@ -229,7 +243,8 @@ impl Detector {
                 Candidate::Fold
                 | Candidate::BranchPoint { .. }
                 | Candidate::Hopf
-                | Candidate::RealEigenvalue => false,
+                | Candidate::RealEigenvalue
+                | Candidate::Stability { .. } => false,
             };
             if hit {
                 self.found.push(candidate);
@@ -307,6 +322,19 @@ impl Detector {
         };
         if kernel > 0 {
             self.found.push(Candidate::BranchPoint { kernel });
+        }
+        Ok(())
+    }
+
+    /// Changes of a stability that is not read from the Jacobian.
+    fn detect_stability(&mut self, a: &State, b: &State, final_say: bool) -> Result<(), Refusal> {
+        let (Some(before), Some(after)) = (a.unstable, b.unstable) else { return Ok(()) };
+        if before.abs_diff(after) > 1 && !final_say {
+            return Err(Refusal::SeveralEvents);
+        }
+        if before != after {
+            let level = 0.5 * (before as f64 + after as f64);
+            self.found.push(Candidate::Stability { level });
         }
         Ok(())
     }

@@ -37,6 +37,8 @@ pub(crate) fn locate<P: Problem>(
     let tolerance = match candidate {
         // the corrector itself is singular there
         Candidate::BranchPoint { .. } => tolerance.max(1e-7 * h),
+        // bisection
+        Candidate::Stability { .. } => tolerance.max(1e-9 * h),
         _ => tolerance,
     };
     let (ta, tb) = (candidate.test(a, a.orientation), candidate.test(b, a.orientation));

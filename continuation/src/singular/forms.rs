@@ -176,7 +176,7 @@ fn pitchfork<P: Problem>(
     let sign = match probe.problem.stability() {
         Stability::Dynamics => 1.0,
         Stability::EnergyHessian => -1.0,
-        Stability::None => 0.0,
+        Stability::SeparateHessian | Stability::None => 0.0,
     };
     // positive where the new solutions face a trunk that is unstable in the critical mode
     let soft = sign * exchange * curvature * trunk.p * crossing;

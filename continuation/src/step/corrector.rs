@@ -8,7 +8,7 @@
 use super::stability::StabilityCount;
 use super::{Refusal, State, Weights};
 use crate::branch::Statistics;
-use crate::linalg::{Bordered, BorderedFacts, Matrix, max_abs};
+use crate::linalg::{Bordered, BorderedFacts, max_abs};
 use crate::problem::{EvalError, ParamId, Problem, check_finite};
 use crate::settings::Settings;
 use crate::singular::{Extended, Probe, arbitrary};
@@ -419,10 +419,8 @@ impl<'a, P: Problem> Core<'a, P> {
         x.eigenvalues.clear();
         if self.stability.wants_eigenvalues() {
             self.assemble(&x.u, x.p)?;
-            let floor = f64::EPSILON * self.jacobian.norm();
-            let inertia = self.jacobian.factor(floor).inertia;
-            let values = &mut x.eigenvalues;
-            self.stability.eigenvalues(self.problem, &mut self.jacobian, inertia, values);
+            let at = (&x.u[..], &self.p[..]);
+            self.stability.eigenvalues(self.problem, &mut self.jacobian, at, &mut x.eigenvalues);
         }
         self.observe(x)
     }

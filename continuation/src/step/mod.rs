@@ -10,6 +10,7 @@ mod weights;
 pub(crate) use corrector::{Constraint, Core, Precision};
 pub(crate) use judge::judge;
 pub(crate) use size::StepSize;
+pub(crate) use stability::hessian_inertia;
 pub(crate) use state::State;
 pub(crate) use weights::{Weights, dot};
 

@@ -4,6 +4,7 @@
 //! of a dense matrix: both are certain. Else from a few eigenvalues by iteration, which is not.
 
 use super::State;
+use crate::linalg::Matrix;
 use crate::modes::ModeSolver;
 use crate::problem::{ParamId, Problem, Stability};
 
@@ -17,6 +18,8 @@ pub(crate) struct StabilityCount<P: Problem> {
     /// Number of eigenvalues that are reported at every point.
     wanted: usize,
     solver: ModeSolver<P>,
+    /// Where stability is not read from the Jacobian.
+    hessian: Option<P::Jacobian>,
     /// Number of unstable ones among the latest few eigenvalues.
     pub(super) last: usize,
 }
@@ -28,6 +31,8 @@ impl<P: Problem> StabilityCount<P> {
             multipliers: problem.multipliers(),
             wanted,
             solver: ModeSolver::new(problem, wanted),
+            hessian: (problem.stability() == Stability::SeparateHessian)
+                .then(|| problem.new_jacobian()),
             last: 0,
         }
     }
@@ -37,15 +42,22 @@ impl<P: Problem> StabilityCount<P> {
         self.wanted > 0
     }
 
-    /// The eigenvalues that are reported, of a factored Jacobian.
+    /// The eigenvalues that are reported at a state; the Jacobian there is assembled.
     pub(crate) fn eigenvalues(
         &mut self,
         problem: &P,
         jacobian: &mut P::Jacobian,
-        inertia: Option<(usize, usize)>,
+        (u, p): (&[f64], &[f64]),
         values: &mut Vec<(f64, f64)>,
     ) {
-        self.solver.solve(problem, jacobian, inertia, values);
+        if let Some(hessian) = &mut self.hessian {
+            let inertia = hessian_inertia(problem, u, p, hessian);
+            self.solver.solve(problem, hessian, inertia, values);
+        } else {
+            let floor = f64::EPSILON * jacobian.norm();
+            let inertia = jacobian.factor(floor).inertia;
+            self.solver.solve(problem, jacobian, inertia, values);
+        }
     }
 
     /// Sets the counts at `x`, whose Jacobian is factored.
@@ -70,6 +82,14 @@ impl<P: Problem> StabilityCount<P> {
                 x.certified = others.certified;
                 self.solver.pick(others.values, &mut x.eigenvalues);
             }
+            return;
+        }
+        if let Some(hessian) = &mut self.hessian {
+            p[which.0] = x.p;
+            let inertia = hessian_inertia(problem, &x.u, p, hessian);
+            x.unstable = inertia.map(|(negative, _)| negative.saturating_sub(self.multipliers));
+            x.certified = inertia.is_some();
+            self.solver.solve(problem, hessian, inertia, &mut x.eigenvalues);
             return;
         }
         let energy = self.sense == Stability::EnergyHessian;
@@ -116,4 +136,17 @@ impl<P: Problem> StabilityCount<P> {
             (x.pair, x.frequency) = (*re, *im);
         }
     }
+}
+
+/// Assembles and factors the Hessian that is not the Jacobian; its numbers of negative and positive
+/// eigenvalues.
+pub(crate) fn hessian_inertia<P: Problem>(
+    problem: &P,
+    u: &[f64],
+    p: &[f64],
+    hessian: &mut P::Jacobian,
+) -> Option<(usize, usize)> {
+    problem.energy_hessian(u, p, hessian).ok()?;
+    let floor = f64::EPSILON * hessian.norm();
+    hessian.factor(floor).inertia
 }

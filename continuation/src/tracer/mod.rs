@@ -29,7 +29,7 @@ pub(crate) use snapshot::Snapshot;
 use crate::branch::{Branch, Event, Point, Statistics, Stop, StopReason};
 use crate::events::{Beside, Detector, Watch};
 use crate::newton::{NewtonSettings, newton};
-use crate::problem::{ParamId, Problem};
+use crate::problem::{ParamId, Problem, Stability};
 use crate::settings::{Settings, SettingsError};
 use crate::step::{Constraint, Core, Precision, Refusal, State, StepSize, Weights, judge};
 use input::{check, increases, range, unknown_observable};
@@ -82,7 +82,9 @@ fn detector<P: Problem>(
         pair: curve.crossing_pair().is_some(),
         zero: curve.crossing_zero().is_some(),
     });
+    let separate = problem.stability() == Stability::SeparateHessian;
     Detector::new(watches, problem.observables(), target, domain, extended)
+        .map(|detector| detector.with_separate_stability(separate))
         .map_err(|name| unknown_observable(problem, name))
 }
 

@@ -155,9 +155,10 @@ impl<P: Problem> Tracer<'_, P> {
                 between(before, self.trial.unstable, *kernel)
             }
             Candidate::Hopf if !last => between(before, self.trial.unstable, 2),
-            Candidate::Fold | Candidate::BranchPoint { .. } | Candidate::Hopf => {
-                self.trial.unstable
-            }
+            Candidate::Fold
+            | Candidate::BranchPoint { .. }
+            | Candidate::Hopf
+            | Candidate::Stability { .. } => self.trial.unstable,
             _ if self.core.problem.special_points().is_some() => self.trial.unstable,
             _ => before,
         };
@@ -252,6 +253,7 @@ impl<P: Problem> Tracer<'_, P> {
             Candidate::Fold => Some(EventKind::Fold),
             Candidate::BranchPoint { .. } => Some(EventKind::BranchPoint),
             Candidate::Hopf => Some(EventKind::Hopf),
+            Candidate::Stability { .. } => Some(EventKind::StabilityChange),
             Candidate::RealEigenvalue => None,
             Candidate::Value { observable, level: 0.0, .. } => {
                 Some(EventKind::Zero(name(observable)))
