@@ -18,7 +18,7 @@ mod tests;
 pub(crate) use document::Override;
 pub(crate) use error::LoadError;
 pub(crate) use physical::{PhysicalCase, Stiffness};
-pub(crate) use source::{SHIPPED, load};
+pub(crate) use source::{SHIPPED, load, load_text};
 
 use std::collections::BTreeMap;
 use std::fmt;

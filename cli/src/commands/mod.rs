@@ -4,6 +4,7 @@ mod check;
 mod completions;
 mod delivery;
 mod diagram;
+mod figure;
 mod list;
 mod map;
 mod progress;
@@ -19,6 +20,7 @@ pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
     match &arguments.command {
         Command::Trace(arguments) => trace::trace(arguments),
         Command::Diagram(arguments) => diagram::diagram(arguments),
+        Command::Figure(arguments) => figure::figure(arguments),
         Command::Check(arguments) => check::check(arguments),
         Command::Map(arguments) => map::map(arguments),
         Command::List => list::list(),

@@ -18,7 +18,9 @@ pub(crate) use chart::DrawError;
 pub(crate) use data::Mark;
 pub(crate) use data::{Curve, Profile, Shape};
 pub(crate) use map::{MAP, draw_map};
-pub(crate) use sheet::{BOLD, FAMILY, FONT, Ink, Panel, PanelLine, Pen, PngError, Sheet, png};
+pub(crate) use sheet::{
+    BOLD, FAMILY, FONT, Ink, Panel, PanelLine, Pen, PngError, Sheet, escape, png,
+};
 
 use crate::output::{DiagramResult, Pictures};
 

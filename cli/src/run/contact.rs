@@ -22,13 +22,23 @@ pub(super) fn run(
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
     let clock = Instant::now();
+    let (problem, traced) = branch(case, contact, observer)?;
+    let seconds = clock.elapsed().as_secs_f64();
+    let pictures = pictures(&case.name, &problem, &traced);
+    Ok(TraceResult { pictures, ..result(case, &traced, seconds) })
+}
+
+/// The branch itself, and its problem.
+pub(crate) fn branch(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    observer: &mut Observer<'_>,
+) -> Result<(ContactProblem, ContactBranch), RunError> {
     let problem = problem(case, contact)?;
     let start = case.path.start;
     let traced = trace_contact(&problem, start, path(case), &mut listen(observer))
         .map_err(|detail| no_start(case, detail))?;
-    let seconds = clock.elapsed().as_secs_f64();
-    let pictures = pictures(&case.name, &problem, &traced);
-    Ok(TraceResult { pictures, ..result(case, &traced, seconds) })
+    Ok((problem, traced))
 }
 
 /// The tracer's settings.
@@ -50,7 +60,7 @@ pub(super) fn no_start(case: &ResolvedCase, detail: TraceError) -> RunError {
 }
 
 /// A traced branch as plain numbers, without pictures.
-pub(super) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) -> TraceResult {
+pub(crate) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) -> TraceResult {
     let (table, events) = tabulate(traced);
     let branch = &traced.branch;
     TraceResult {

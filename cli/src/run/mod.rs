@@ -7,6 +7,7 @@ mod form;
 mod general;
 mod map;
 
+pub(crate) use contact::{branch as contact_branch, result as contact_result};
 pub(crate) use map::run_map;
 
 use crate::case::{CatalogueEntry, PathCase, ProblemCase, ResolvedCase};

@@ -8,6 +8,7 @@ mod png;
 mod text;
 
 pub(crate) use png::{PngError, png};
+pub(crate) use text::escape;
 
 use super::data::Curve;
 use super::palette::{Color, of_quantity, of_state};
