@@ -166,6 +166,7 @@ pub(crate) fn json(computed: &Computed) -> Result<String, serde_json::Error> {
     let document = serde_json::json!({
         "figures": figures,
         "claims": computed.claims,
+        "estimates": computed.estimates,
         "incomplete": computed.early,
     });
     let mut text = serde_json::to_string_pretty(&document)?;

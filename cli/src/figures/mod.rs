@@ -6,6 +6,7 @@
 
 mod claims;
 mod curve;
+mod estimates;
 mod files;
 mod laws;
 mod manifest;
@@ -19,6 +20,7 @@ use crate::pictures::Sheet;
 use crate::run::RunError;
 use claims::Claim;
 use curve::Traced;
+use estimates::EstimateRow;
 use manifest::{FIGURES, Manifest, SCHEMATIC};
 use std::sync::atomic::AtomicBool;
 
@@ -106,7 +108,9 @@ pub(crate) struct Computed {
     pub(crate) figures: Vec<Figure>,
     /// The paper's statements about them.
     pub(crate) claims: Vec<Claim>,
-    /// Branches that ended early, and why.
+    /// Moduli that curves give back.
+    pub(crate) estimates: Vec<EstimateRow>,
+    /// Branches that ended early, and why; states that were not reached.
     pub(crate) early: Vec<String>,
 }
 
@@ -158,7 +162,7 @@ impl Plan {
     ) -> Result<Computed, FigureError> {
         let all = self.jobs.len();
         let traced = curve::trace_all(self.jobs, stop, &mut |done| hear(Progress { done, all }))?;
-        let early = traced
+        let mut early: Vec<String> = traced
             .iter()
             .filter(|t| !t.branch.branch.stopped.reason.is_complete())
             .map(|t| {
@@ -169,6 +173,7 @@ impl Plan {
             })
             .collect();
         let claims = claims::of(&traced);
+        let estimates = estimates::table(&traced);
         let mut rest = traced;
         let mut figures = Vec::new();
         for manifest in self.manifests {
@@ -176,6 +181,7 @@ impl Plan {
             rest = others;
             let traced: Vec<Traced> = traced;
             let views: Vec<&Traced> = traced.iter().collect();
+            early.extend(panels::not_reached(&manifest, &views));
             let sheet = Sheet {
                 title: format!("Figure {}. {}", manifest.number, manifest.title),
                 subtitle: String::new(),
@@ -183,7 +189,7 @@ impl Plan {
             };
             figures.push(Figure { manifest, sheet, traced });
         }
-        Ok(Computed { figures, claims, early })
+        Ok(Computed { figures, claims, estimates, early })
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::Computed;
 use super::claims::{Claim, Verdict};
+use super::estimates::EstimateRow;
 use super::files::data_name;
 use crate::pictures::{BOLD, FAMILY, FONT, escape};
 use std::fmt::Write;
@@ -48,18 +49,18 @@ pub(super) fn page(computed: &Computed, drawings: &[String]) -> String {
         let m = &figure.manifest;
         let n = m.number;
         let _ = write!(out, "<section id=\"fig{n}\"><h2>Figure {n}. ");
-        escape(&mut out, &m.title);
+        small(&mut out, &m.title);
         out.push_str("</h2>\n");
         // ids of clipping paths are unique in one drawing only
         out.push_str(&svg.replace("frame-", &format!("f{n}-frame-")));
         out.push_str("<p>");
-        escape(&mut out, &m.caption);
+        small(&mut out, &m.caption);
         out.push_str("</p>\n");
         if !m.notes.is_empty() {
             out.push_str("<ul class=\"notes\">");
             for note in &m.notes {
                 out.push_str("<li>");
-                escape(&mut out, note);
+                small(&mut out, note);
                 out.push_str("</li>");
             }
             out.push_str("</ul>\n");
@@ -87,7 +88,9 @@ fn claims(out: &mut String, claims: &[Claim]) {
         return;
     }
     out.push_str("<section id=\"claims\"><h2>Claims</h2>\n<table><tr>");
-    for title in ["Fig.", "The paper says", "Paper", "Here", "Tolerance", "Verdict", "Why"] {
+    for title in
+        ["Fig.", "The paper says", "Measured here", "Paper", "Here", "Tolerance", "Verdict", "Why"]
+    {
         let _ = write!(out, "<th>{title}</th>");
     }
     out.push_str("</tr>\n");
@@ -96,9 +99,6 @@ fn claims(out: &mut String, claims: &[Claim]) {
             Verdict::Agrees => ("good", "agrees"),
             Verdict::Disagrees => ("bad", "disagrees"),
             Verdict::CannotBeDecided => ("open", "cannot be decided"),
-        };
-        let number = |value: Option<f64>| {
-            value.map_or("–".to_owned(), |v| format!("{} {}", short(v), claim.unit))
         };
         let _ = write!(out, "<tr><td>{}</td>", claim.figure);
         for text in [&claim.statement, &number(claim.paper), &number(claim.ours), &claim.tolerance]
@@ -112,6 +112,55 @@ fn claims(out: &mut String, claims: &[Claim]) {
         out.push_str("</td></tr>\n");
     }
     out.push_str("</table></section>\n");
+}
+
+fn estimates(out: &mut String, rows: &[EstimateRow]) {
+    if rows.is_empty() {
+        return;
+    }
+    out.push_str(
+        "<h3>Moduli that the curves give back</h3>\n<table><tr><th>Curve</th><th>Combination</th>\
+         <th>Formulas</th><th>χ (N/m): found</th><th>true</th><th>k<sub>b</sub> (N m): found</th>\
+         <th>true</th><th>E (MPa): found</th><th>true</th><th>h (nm): found</th><th>true</th>\
+         <th>Parts of the curve</th></tr>\n",
+    );
+    for row in rows {
+        out.push_str("<tr>");
+        let cells = [
+            &row.chi,
+            &row.bending,
+            &row.young.map(|x| x.map(|x| x * 1e-6)),
+            &row.thickness.map(|x| x.map(|x| x * 1e9)),
+        ];
+        let cells = cells.into_iter().flatten().map(|x| number(*x));
+        let first = [&row.curve, &row.combination, &row.formulas].map(Clone::clone);
+        for text in first.into_iter().chain(cells).chain([row.used.clone()]) {
+            out.push_str("<td>");
+            escape(out, &text);
+            out.push_str("</td>");
+        }
+        out.push_str("</tr>\n");
+    }
+    out.push_str("</table>\n");
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), short)
+}
+
+/// Text with its small letters.
+fn small(out: &mut String, text: &str) {
+    let mut rest = text;
+    while let Some(at) = rest.find("_{").into_iter().chain(rest.find("^{")).min() {
+        let tag = if rest[at..].starts_with('_') { "sub" } else { "sup" };
+        escape(out, &rest[..at]);
+        let (inner, after) = rest[at + 2..].split_once('}').unwrap_or((&rest[at + 2..], ""));
+        let _ = write!(out, "<{tag}>");
+        escape(out, inner);
+        let _ = write!(out, "</{tag}>");
+        rest = after;
+    }
+    escape(out, rest);
 }
 
 /// Four digits.

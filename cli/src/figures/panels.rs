@@ -47,6 +47,23 @@ pub(super) fn panels(manifest: &Manifest, traced: &[&Traced]) -> Vec<Panel> {
     manifest.panels.iter().map(draw).collect()
 }
 
+/// States that the branches do not reach, in words.
+pub(super) fn not_reached(manifest: &Manifest, traced: &[&Traced]) -> Vec<String> {
+    let mut missing = Vec::new();
+    for panel in &manifest.panels {
+        for (name, x, pass) in keys_of(panel) {
+            let Some(traced) = traced.iter().find(|t| t.name == name) else { continue };
+            if traced.state(traced.deformation(panel.x, x), pass).is_none() {
+                missing.push(format!(
+                    "figure {}({}), curve {name}: no state at {x}",
+                    manifest.number, panel.letter
+                ));
+            }
+        }
+    }
+    missing
+}
+
 fn keys_of(panel: &PanelSpec) -> Vec<Key> {
     let mut keys = Vec::new();
     for name in &panel.curves {
@@ -120,7 +137,7 @@ fn law_line(law: Law, spec: &PanelSpec, traced: &Traced, end: f64, several: bool
     let (label, place) = match law {
         Law::Reissner => ("Reissner, (32)", 0),
         Law::PrintedPogorelov => ("Pogorelov, (33)", 1),
-        Law::PlatePogorelov => ("the same, plates", 2),
+        Law::PlatePogorelov => ("Pogorelov, plates", 2),
         Law::Cubic => ("cubic, (39) in full", 3),
         Law::LinearAndCubicShare => ("(32) + 0.37 × (39)", 4),
     };

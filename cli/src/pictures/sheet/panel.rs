@@ -191,7 +191,15 @@ fn entries<'p>(
     panel: &'p Panel,
 ) -> impl Iterator<Item = (&'p str, Option<&'p PanelLine>)> + use<'p> {
     let lines = panel.lines.iter().filter(|l| !l.label.is_empty());
-    let dashes = panel.lines.iter().any(|l| l.pen == Pen::Data && l.curve.has_unstable());
+    let inside = |range: Option<[f64; 2]>, at: f64| range.is_none_or(|[a, b]| a <= at && at <= b);
+    let seen = |l: &PanelLine| {
+        let curve = &l.curve;
+        let points = curve.unstable.iter().zip(curve.x.iter().zip(&curve.y));
+        points
+            .filter(|(unstable, _)| **unstable)
+            .any(|(_, (x, y))| inside(panel.x_range, *x) && inside(panel.y_range, *y))
+    };
+    let dashes = panel.lines.iter().any(|l| l.pen == Pen::Data && seen(l));
     let lines = lines.map(|l| (l.label.as_str(), Some(l)));
     lines.chain(dashes.then_some(("unstable", None)))
 }
