@@ -12,6 +12,7 @@ mod laws;
 mod manifest;
 mod page;
 mod panels;
+mod ring;
 
 pub(crate) use files::{files, json, summary};
 
@@ -22,6 +23,7 @@ use claims::Claim;
 use curve::Traced;
 use estimates::EstimateRow;
 use manifest::{FIGURES, Manifest, SCHEMATIC};
+use ring::RingBranch;
 use std::sync::atomic::AtomicBool;
 
 /// Why figures cannot be computed.
@@ -172,7 +174,14 @@ impl Plan {
                 format!("figure {}, curve {}: {reason} at z0 = {at:.6}: {detail}", t.figure, t.name)
             })
             .collect();
-        let claims = claims::of(&traced);
+        let rings: Vec<RingBranch> = self
+            .manifests
+            .iter()
+            .filter(|m| m.panels.iter().any(|panel| panel.ring_load))
+            .filter_map(|m| traced.iter().find(|t| t.figure == m.number))
+            .flat_map(|t| ring::branches(t, stop))
+            .collect();
+        let claims = claims::of(&traced, &rings);
         let estimates = estimates::table(&traced);
         let mut rest = traced;
         let mut figures = Vec::new();
@@ -185,7 +194,7 @@ impl Plan {
             let sheet = Sheet {
                 title: format!("Figure {}. {}", manifest.number, manifest.title),
                 subtitle: String::new(),
-                panels: panels::panels(&manifest, &views),
+                panels: panels::panels(&manifest, &views, &rings),
             };
             figures.push(Figure { manifest, sheet, traced });
         }
@@ -213,7 +222,7 @@ mod tests {
     fn figures_at_few_elements_have_all_their_panels() {
         let stop = AtomicBool::new(false);
         let computed =
-            plan(&[12, 20], Some("60"), &[]).unwrap().compute(&stop, &mut |_| {}).unwrap();
+            plan(&[4, 12, 20], Some("60"), &[]).unwrap().compute(&stop, &mut |_| {}).unwrap();
         assert!(computed.early.is_empty(), "{:?}", computed.early);
         for figure in &computed.figures {
             assert_eq!(figure.sheet.panels.len(), figure.manifest.panels.len());

@@ -65,6 +65,9 @@ pub(super) fn page(computed: &Computed, drawings: &[String]) -> String {
             }
             out.push_str("</ul>\n");
         }
+        if n == 9 {
+            estimates(&mut out, &computed.estimates);
+        }
         let _ = write!(
             out,
             "<p class=\"files\"><a href=\"fig{n:02}.svg\">SVG</a> <a href=\"fig{n:02}.png\">PNG</a> data:"

@@ -3,6 +3,7 @@
 use super::curve::{State, Traced};
 use super::laws::force;
 use super::manifest::{Abscissa, Law, Manifest, Ordinate, PanelSpec, Part, Show};
+use super::ring::{RingBranch, RingPoint};
 use crate::pictures::{Curve, Ink, Panel, PanelLine, Pen};
 use std::f64::consts::TAU;
 
@@ -17,7 +18,7 @@ const COLORS: usize = 7;
 type Key = (String, f64, i32);
 
 /// The panels of a figure.
-pub(super) fn panels(manifest: &Manifest, traced: &[&Traced]) -> Vec<Panel> {
+pub(super) fn panels(manifest: &Manifest, traced: &[&Traced], rings: &[RingBranch]) -> Vec<Panel> {
     let mut keys: Vec<Key> = Vec::new();
     for panel in &manifest.panels {
         for key in keys_of(panel) {
@@ -39,6 +40,9 @@ pub(super) fn panels(manifest: &Manifest, traced: &[&Traced]) -> Vec<Panel> {
             Show::Shapes => shapes(spec, &states(spec, &curves, &keys)),
             Show::Pressure => pressure(spec, &states(spec, &curves, &keys)),
         };
+        if spec.ring_load {
+            panel.lines.extend(rings.iter().enumerate().map(|(i, ring)| ring_line(spec, ring, i)));
+        }
         panel.title = format!("({}) {}", spec.letter, spec.title);
         panel.x_range = spec.x_range.or(panel.x_range);
         panel.y_range = spec.y_range.or(panel.y_range);
@@ -129,6 +133,23 @@ fn forces(spec: &PanelSpec, curves: &[(usize, &Traced)]) -> Panel {
     Panel { x: x_title(spec.x), y: y_title(spec.y), lines, ..Panel::default() }
 }
 
+/// A branch of the ring load; its colour follows those of the films.
+fn ring_line(spec: &PanelSpec, ring: &RingBranch, at: usize) -> PanelLine {
+    let y = |q: &RingPoint| if spec.show == Show::Energies { q.energy } else { q.force };
+    PanelLine {
+        label: ring.label.to_owned(),
+        ink: Ink::Place(2 + at),
+        pen: Pen::Data,
+        right: false,
+        curve: Curve {
+            x: ring.points.iter().map(|q| q.deflection).collect(),
+            y: ring.points.iter().map(y).collect(),
+            unstable: ring.points.iter().map(|q| q.unstable).collect(),
+            ..Curve::default()
+        },
+    }
+}
+
 fn law_line(law: Law, spec: &PanelSpec, traced: &Traced, end: f64, several: bool) -> PanelLine {
     let x: Vec<f64> = (0..=LAW).map(|i| end * i as f64 / LAW as f64).collect();
     let y = x.iter().map(|x| {
@@ -165,7 +186,11 @@ fn energies(spec: &PanelSpec, curves: &[(usize, &Traced)]) -> Panel {
         for (part, right) in sides.chain(spec.right.map(|part| (part, true))) {
             let name = format!("energy_{}", part.name());
             let value = |i| traced.observable(i, &name);
-            let label = if several { traced.label.clone() } else { part.name().to_owned() };
+            let label = if several || spec.ring_load {
+                traced.label.clone()
+            } else {
+                part.name().to_owned()
+            };
             lines.push(PanelLine {
                 label: if right { format!("{label} (right axis)") } else { label },
                 ink: if several { Ink::Place(*at) } else { Ink::Quantity(part.name()) },

@@ -3,12 +3,14 @@
 //! The paper's values are quoted; ours are measured on the branches; the verdict follows from both
 //! by the tolerance that stands in the row.
 
+mod benchmark;
 mod hard;
 mod measure;
 mod soft;
 
 use super::curve::Traced;
 use super::page::short;
+use super::ring::RingBranch;
 use serde::Serialize;
 
 /// What the numbers say of a statement.
@@ -122,8 +124,11 @@ impl<'t> Branches<'t> {
 }
 
 /// All statements about the figures whose branches these are.
-pub(super) fn of(traced: &[Traced]) -> Vec<Claim> {
+pub(super) fn of(traced: &[Traced], rings: &[RingBranch]) -> Vec<Claim> {
     let mut claims = Vec::new();
+    if traced.iter().any(|t| t.figure == 4) {
+        claims.extend(benchmark::ring_load(&Branches(4, traced), rings));
+    }
     for (figure, of) in [
         (5, hard::measured_shells as fn(&Branches<'_>) -> Vec<Claim>),
         (6, hard::weak_adhesion),
