@@ -2,6 +2,7 @@
 
 use super::claims::{Claim, Verdict};
 use super::page::page;
+use super::ring::RingBranch;
 use super::{Computed, Figure};
 use crate::output::branch_csv;
 use crate::pictures::{Panel, Pen, PngError, png};
@@ -71,6 +72,11 @@ pub(crate) fn files(
             files.push((format!("cases/{}.toml", traced.case.name), traced.case.to_toml().into()));
         }
     }
+    for ring in &computed.rings {
+        let name = format!("data/fig04-{}.csv", ring.label.replace(", ", "-").replace(' ', "-"));
+        let table = ring_csv(ring).map_err(|error| FileError::Csv { name: name.clone(), error })?;
+        files.push((name, table));
+    }
     if pictures {
         let made = pngs(&computed.figures, &drawings);
         for ((figure, svg), png) in computed.figures.iter().zip(&drawings).zip(made) {
@@ -115,6 +121,27 @@ fn panel_csv(panel: &Panel) -> Result<Vec<u8>, csv::Error> {
         }
     }
     out.flush()?;
+    out.into_inner().map_err(|error| csv::Error::from(error.into_error()))
+}
+
+/// A branch of the ring load, in the columns of such a case.
+fn ring_csv(ring: &RingBranch) -> Result<Vec<u8>, csv::Error> {
+    let mut out = csv::Writer::from_writer(Vec::new());
+    out.write_record([
+        "point",
+        "alpha",
+        "deflection_over_h",
+        "force",
+        "unstable",
+        "pole_over_h",
+        "energy_total",
+    ])?;
+    for (i, q) in ring.points.iter().enumerate() {
+        let unstable = if q.unstable { "1" } else { "0" };
+        let [alpha, deflection, force, pole, energy] =
+            [q.alpha, q.deflection, q.force, q.pole, q.energy].map(|x| format!("{x}"));
+        out.write_record([&i.to_string(), &alpha, &deflection, &force, unstable, &pole, &energy])?;
+    }
     out.into_inner().map_err(|error| csv::Error::from(error.into_error()))
 }
 

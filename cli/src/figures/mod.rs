@@ -110,6 +110,8 @@ pub(crate) struct Computed {
     pub(crate) figures: Vec<Figure>,
     /// The paper's statements about them.
     pub(crate) claims: Vec<Claim>,
+    /// Branches of the ring load, of Fig. 4.
+    pub(crate) rings: Vec<RingBranch>,
     /// Moduli that curves give back.
     pub(crate) estimates: Vec<EstimateRow>,
     /// Branches that ended early, and why; states that were not reached.
@@ -198,7 +200,7 @@ impl Plan {
             };
             figures.push(Figure { manifest, sheet, traced });
         }
-        Ok(Computed { figures, claims, estimates, early })
+        Ok(Computed { figures, claims, rings, estimates, early })
     }
 }
 
