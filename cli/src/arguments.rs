@@ -1,8 +1,10 @@
 //! The command line.
 
 use crate::case::Override;
+use crate::sweep::Shard;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+use std::num::NonZero;
 use std::path::PathBuf;
 
 /// Bifurcation diagrams: branches of solutions followed around their folds.
@@ -28,11 +30,18 @@ pub(crate) enum Command {
     Trace(TraceArguments),
     /// Follow a branch and all that leave it; write them as one diagram
     Diagram(DiagramArguments),
+    /// Close and open the plates once, with the jumps between stable states; write the path, the energy
+    /// it dissipates and pictures
+    Cycle(CycleArguments),
     /// Follow special points in two parameters; write the curves, the special points on them and a
     /// picture
     Map(MapArguments),
     /// Compute figures of the reference paper, and compare its claims with them
     Figure(FigureArguments),
+    /// Trace many cases, over grids and lists of parameters, on all cores
+    Sweep(SweepArguments),
+    /// Unite the results of the shards of a sweep
+    Merge(MergeArguments),
     /// Print a case with every default written out, or say what is wrong with it
     Check(CaseArguments),
     /// List the cases and problems that have names
@@ -78,6 +87,20 @@ pub(crate) struct TraceArguments {
     /// Which case.
     #[command(flatten)]
     pub(crate) case: CaseArguments,
+    /// Write report.html too, a page on which to move along the branch and look at its states
+    #[arg(long)]
+    pub(crate) report: bool,
+    /// What to do with the results.
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
+}
+
+/// Which case, and what to do with its cycle.
+#[derive(Debug, Args)]
+pub(crate) struct CycleArguments {
+    /// Which case.
+    #[command(flatten)]
+    pub(crate) case: CaseArguments,
     /// What to do with the results.
     #[command(flatten)]
     pub(crate) output: OutputArguments,
@@ -96,6 +119,9 @@ pub(crate) struct DiagramArguments {
     /// on from what is kept in DIR/unfinished
     #[arg(long)]
     pub(crate) restart: bool,
+    /// Write report.html too, a page on which to move along the branches and look at their states
+    #[arg(long)]
+    pub(crate) report: bool,
     /// What to do with the results.
     #[command(flatten)]
     pub(crate) output: OutputArguments,
@@ -137,6 +163,38 @@ pub(crate) struct FigureArguments {
     /// Replace a value in every case of the figures, e.g. --set shell.poisson=0.3; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
+    /// What to do with the results.
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
+}
+
+/// Which sweep, and how to share the work.
+#[derive(Debug, Args)]
+pub(crate) struct SweepArguments {
+    /// A sweep file: a case file that also says which keys vary
+    #[arg(value_name = "SWEEP.toml")]
+    pub(crate) sweep: PathBuf,
+    /// Number of threads [default: all cores]
+    #[arg(long, value_name = "N")]
+    pub(crate) jobs: Option<NonZero<usize>>,
+    /// Compute only the k-th of n shares of the cases, for the jobs of a cluster; "arclen merge"
+    /// unites them
+    #[arg(long, value_name = "k/n", default_value_t = Shard::ALL, hide_default_value = true)]
+    pub(crate) shard: Shard,
+    /// Begin anew: the same command otherwise goes on with the cases that are not in DIR/cases yet
+    #[arg(long)]
+    pub(crate) restart: bool,
+    /// What to do with the results.
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
+}
+
+/// Which shards.
+#[derive(Debug, Args)]
+pub(crate) struct MergeArguments {
+    /// Folders that "arclen sweep --shard" wrote
+    #[arg(value_name = "DIR", required = true)]
+    pub(crate) folders: Vec<PathBuf>,
     /// What to do with the results.
     #[command(flatten)]
     pub(crate) output: OutputArguments,

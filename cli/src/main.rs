@@ -10,8 +10,10 @@ mod commands;
 mod exit;
 mod figures;
 mod output;
+mod phase;
 mod pictures;
 mod run;
+mod sweep;
 mod terminal;
 mod units;
 

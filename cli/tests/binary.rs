@@ -93,7 +93,7 @@ fn help_and_version_exit_with_0() {
 #[test]
 fn check_prints_a_case_that_checks() {
     let place = place();
-    for case in ["good.toml", "fig06", "fig07", "fig12", "fig16", "polymer"] {
+    for case in ["good.toml", "fig06", "fig07", "fig12", "fig16", "cantilever", "polymer"] {
         let output = arclen(place.path(), &["check", case, "--set", "path.max_points=77"]);
         assert_eq!(output.status.code(), Some(0), "{case}: {}", text(&output.stderr));
         assert!(text(&output.stdout).contains("max_points = 77"), "{case}");
@@ -106,7 +106,7 @@ fn check_prints_a_case_that_checks() {
 #[test]
 fn list_names_the_shipped_cases() {
     let output = arclen(place().path(), &["list"]);
-    for name in ["fig06", "fig07", "fig12", "fig16", "polymer"] {
+    for name in ["fig06", "fig07", "fig12", "fig16", "cantilever", "polymer"] {
         assert!(text(&output.stdout).contains(&format!("\n  {name} ")), "{name}");
     }
 }

@@ -16,9 +16,9 @@ use crate::quadrature::gauss_legendre;
 use continuation::{Matrix, ParamId, Problem};
 use num_dual::{DualNum, HyperDual64};
 
-type H = HyperDual64;
+pub(crate) type H = HyperDual64;
 
-fn problem(law: Law, gauss: usize) -> ContactProblem {
+pub(crate) fn problem(law: Law, gauss: usize) -> ContactProblem {
     let groups = Dimensionless {
         bending: 2e-3,
         pressure: 0.4,
@@ -32,12 +32,12 @@ fn problem(law: Law, gauss: usize) -> ContactProblem {
 }
 
 /// A smooth-ish deformed state under the plate.
-fn state(n: usize, seed: f64, size: f64) -> Vec<f64> {
+pub(crate) fn state(n: usize, seed: f64, size: f64) -> Vec<f64> {
     (0..n).map(|i| size * ((i as f64) * 0.37 + seed).sin()).collect()
 }
 
 /// The total energy at `u + ε1 a + ε2 b` and dual parameters.
-fn energy(problem: &ContactProblem, u: &[f64], a: &[f64], b: &[f64], p: [H; 6]) -> H {
+pub(crate) fn energy(problem: &ContactProblem, u: &[f64], a: &[f64], b: &[f64], p: [H; 6]) -> H {
     let mesh = problem.mesh();
     let [plate, adhesion, kb, ambient, length, tension] = p;
     let nu = problem.shell().poisson;
@@ -71,7 +71,7 @@ fn energy(problem: &ContactProblem, u: &[f64], a: &[f64], b: &[f64], p: [H; 6]) 
     total + ambient * (volume - REST_VOLUME) + rest * work
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 

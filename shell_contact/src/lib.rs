@@ -29,6 +29,7 @@ pub mod bending;
 mod certify;
 pub mod contact;
 pub mod density;
+pub mod device;
 #[cfg(test)]
 mod dual;
 pub mod energy;
@@ -48,6 +49,7 @@ pub mod trace;
 pub mod weak_form;
 
 pub use contact::ContactProblem;
+pub use device::{Device, LoadedProblem};
 pub use meridian::Mesh;
 pub use observables::{Observation, Profile};
 pub use params::{

@@ -18,12 +18,16 @@ pub struct ContactBranch {
 }
 
 impl ContactBranch {
-    /// A branch that was traced with [`force_watches`]; `zero_force` is where deformation counts
+    /// A branch that was traced with [`force_watches`], in `z0` or in the parameter of a device; `zero_force` is where deformation counts
     /// from, by default the branch's own first zero of the force.
     pub fn new(mut branch: Branch, zero_force: Option<f64>) -> Self {
         name_pull_off(&mut branch);
         let zero = EventKind::Zero("force".to_owned());
-        let own = branch.events_of(&zero).next().map(|event| event.p);
+        let height = branch.observables.iter().position(|name| name == "z0");
+        let own = branch.events_of(&zero).next().map(|event| match height {
+            Some(k) => branch.points[event.point].observables[k],
+            None => event.p,
+        });
         ContactBranch { zero_force: zero_force.or(own), branch }
     }
 

@@ -52,6 +52,8 @@ pub(crate) enum Value {
     Real(f64),
     /// A table.
     Table(Table),
+    /// An array.
+    Array(Vec<Node>),
     /// A type that no key has, by name.
     Other(&'static str),
 }
@@ -64,6 +66,7 @@ impl Value {
             Value::Integer(_) => "an integer",
             Value::Real(_) => "a float",
             Value::Table(_) => "a table",
+            Value::Array(_) => "an array",
             Value::Other(name) => name,
         }
     }
@@ -192,7 +195,16 @@ fn convert(
         DeValue::Float(float) => Value::Real(float.as_str().parse().unwrap_or(f64::NAN)),
         DeValue::Boolean(_) => Value::Other("a boolean"),
         DeValue::Datetime(_) => Value::Other("a date"),
-        DeValue::Array(_) => Value::Other("an array"),
+        DeValue::Array(items) => Value::Array(
+            items
+                .iter()
+                .map(|item| Node {
+                    origin: origin(item.span()),
+                    raw: raw(item.span()),
+                    value: convert(item.get_ref(), origin, raw),
+                })
+                .collect(),
+        ),
         DeValue::Table(table) => Value::Table(convert_table(table, origin, raw)),
     }
 }

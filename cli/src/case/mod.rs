@@ -4,17 +4,19 @@
 //! the catalogue), [`document`] parses it and lays the overrides over it, [`resolve`] checks every
 //! key and fills in defaults, and [`mod@write`] says the result as a case file again.
 
+mod device;
 pub(crate) mod document;
 pub(crate) mod error;
 mod physical;
-mod reader;
-mod resolve;
+pub(crate) mod reader;
+pub(crate) mod resolve;
 pub(crate) mod source;
 mod write;
 
 #[cfg(test)]
 mod tests;
 
+pub(crate) use device::DeviceCase;
 pub(crate) use document::Override;
 pub(crate) use error::LoadError;
 pub(crate) use physical::{PhysicalCase, Stiffness};
@@ -60,6 +62,8 @@ pub(crate) struct ContactCase {
     pub(crate) physical: Option<Box<PhysicalCase>>,
     /// The mesh.
     pub(crate) mesh: MeshCase,
+    /// What holds the plates.
+    pub(crate) device: DeviceCase,
 }
 
 /// A shell under a ring load.
@@ -71,6 +75,8 @@ pub(crate) struct RingLoadCase {
     pub(crate) bending: f64,
     /// `P_A R0 / chi`.
     pub(crate) pressure: f64,
+    /// The polytropic exponent of the gas: 0 is constant pressure.
+    pub(crate) gas_exponent: f64,
     /// The mesh.
     pub(crate) mesh: MeshCase,
 }

@@ -39,6 +39,11 @@ impl<'a> Section<'a> {
         Section { name: "", origin: Origin::File, table: Some(table) }
     }
 
+    /// A table that stands somewhere else, such as in an array.
+    pub(crate) fn of(name: &'static str, origin: Origin, table: &'a Table) -> Self {
+        Section { name, origin, table: Some(table) }
+    }
+
     /// Whether the case has this table.
     pub(crate) fn exists(&self) -> bool {
         self.table.is_some()
@@ -145,7 +150,8 @@ impl Reader {
         }
     }
 
-    fn wrong_type(
+    /// Complain about a value of the wrong type.
+    pub(crate) fn wrong_type(
         &self,
         section: Section<'_>,
         key: &str,
@@ -226,6 +232,38 @@ impl Reader {
             return Some(text);
         }
         self.wrong_type(section, key, node, "a string", "; write it in quotes");
+        None
+    }
+
+    /// One of a few words, if it is there.
+    pub(crate) fn word(
+        &self,
+        section: Section<'_>,
+        key: &str,
+        words: &[&'static str],
+    ) -> Option<&'static str> {
+        let text = self.text(section, key)?;
+        let known = words.iter().find(|word| **word == text).copied();
+        if let (None, Some(node)) = (known, section.get(key)) {
+            let suggestion = closest(text, words.iter().copied()).map(ToString::to_string);
+            let allowed = words.iter().map(ToString::to_string).collect();
+            self.refuse(section, key, node, Complaint::UnknownWord { allowed, suggestion });
+        }
+        known
+    }
+
+    /// An array, if it is there.
+    pub(crate) fn array<'a>(
+        &self,
+        section: Section<'a>,
+        key: &str,
+        of: &str,
+    ) -> Option<&'a [Node]> {
+        let node = section.get(key)?;
+        if let Value::Array(items) = &node.value {
+            return Some(items);
+        }
+        self.wrong_type(section, key, node, &format!("an array of {of}"), "");
         None
     }
 

@@ -1,12 +1,13 @@
 //! From a tree of keys to a case: every key is checked, every default filled in.
 
+use super::device;
 use super::document::Table;
 use super::error::{CaseError, Complaint};
 use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
 use super::reader::{ANY, Allowed, NOT_NEGATIVE, POSITIVE, Reader, Section};
 use super::{
-    CatalogueCase, CatalogueEntry, ContactCase, DiagramCase, ElementRange, Groups, Law, LoadedCase,
-    MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
+    CatalogueCase, CatalogueEntry, ContactCase, DeviceCase, DiagramCase, ElementRange, Groups, Law,
+    LoadedCase, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
 };
 use crate::closest::closest;
 use crate::units::{self, Dimension};
@@ -14,7 +15,7 @@ use crate::units::{self, Dimension};
 const SHELL: &[&str] = &["law", "poisson", "b"];
 const DIMENSIONLESS: &[&str] =
     &["bending", "pressure", "adhesion", "film", "surface_tension", "gas_exponent"];
-const RING_GROUPS: &[&str] = &["bending", "pressure"];
+const RING_GROUPS: &[&str] = &["bending", "pressure", "gas_exponent"];
 const PHYSICAL: &[&str] = &[
     "radius",
     "young",
@@ -42,6 +43,7 @@ const HOMES: &[(&str, &[&str])] = &[
     ("path", PATH),
     ("diagram", DIAGRAM),
     ("map", MAP),
+    ("device", device::KEYS),
 ];
 
 const GAS_EXPONENT: f64 = 1.07;
@@ -161,6 +163,7 @@ impl<'a> Resolver<'a> {
             "path",
             "diagram",
             "map",
+            "device",
         ];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
@@ -185,10 +188,15 @@ impl<'a> Resolver<'a> {
             }
         };
         let mesh = self.mesh();
-        let path = self.path(None, CONTACT_START, POSITIVE);
-        let problem = match (shell, parameters, mesh) {
-            (Some(shell), Some((groups, physical)), Some(mesh)) => {
-                Some(ProblemCase::Contact(ContactCase { shell, groups, physical, mesh }))
+        let device = device::device(self.reader, self.table("device", device::KEYS));
+        let (start, end) = match device {
+            Some(DeviceCase::Grip) => (CONTACT_START, POSITIVE),
+            _ => (ANY, ANY),
+        };
+        let path = self.path(None, start, end);
+        let problem = match (shell, parameters, mesh, device) {
+            (Some(shell), Some((groups, physical)), Some(mesh), Some(device)) => {
+                Some(ProblemCase::Contact(ContactCase { shell, groups, physical, mesh, device }))
             }
             _ => None,
         };
@@ -203,11 +211,13 @@ impl<'a> Resolver<'a> {
         let groups = self.table("dimensionless", RING_GROUPS);
         let bending = self.reader.required(groups, "bending", POSITIVE);
         let pressure = self.or(groups, "pressure", NOT_NEGATIVE, 0.0);
+        let gas_exponent = self.or(groups, "gas_exponent", NOT_NEGATIVE, 0.0);
         let mesh = self.mesh();
         let path = self.path(None, ANGLE, ANGLE);
-        let problem = match (shell, bending, pressure, mesh) {
-            (Some(shell), Some(bending), Some(pressure), Some(mesh)) => {
-                Some(ProblemCase::RingLoad(RingLoadCase { shell, bending, pressure, mesh }))
+        let problem = match (shell, bending, pressure, gas_exponent, mesh) {
+            (Some(shell), Some(bending), Some(pressure), Some(gas_exponent), Some(mesh)) => {
+                let case = RingLoadCase { shell, bending, pressure, gas_exponent, mesh };
+                Some(ProblemCase::RingLoad(case))
             }
             _ => None,
         };
@@ -563,7 +573,7 @@ impl<'a> Resolver<'a> {
 }
 
 /// The nearest name that is fit for a folder.
-pub(super) fn plain_name(text: &str) -> String {
+pub(crate) fn plain_name(text: &str) -> String {
     let awkward = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':');
     let name = text.trim().trim_start_matches('.').replace(awkward, "_");
     if name.is_empty() { "case".to_string() } else { name }

@@ -14,6 +14,7 @@ pub(crate) const SHIPPED: &[(&str, &str)] = &[
     ("fig07", include_str!("../../../cases/fig07.toml")),
     ("fig12", include_str!("../../../cases/fig12.toml")),
     ("fig16", include_str!("../../../cases/fig16.toml")),
+    ("cantilever", include_str!("../../../cases/cantilever.toml")),
     ("polymer", include_str!("../../../cases/polymer.toml")),
 ];
 
@@ -65,7 +66,11 @@ pub(crate) fn load_text(
     resolve(file, name, &tree, catalogue).map_err(LoadError::Invalid)
 }
 
-fn read(path: &Path) -> Result<String, LoadError> {
+/// The text of a file.
+///
+/// # Errors
+/// When it cannot be read, is too long, or is no text.
+pub(crate) fn read(path: &Path) -> Result<String, LoadError> {
     let file = path.display().to_string();
     let unreadable = |source: std::io::Error| match source.kind() {
         ErrorKind::NotFound => LoadError::Missing { file: file.clone() },

@@ -21,6 +21,7 @@ impl ResolvedCase {
                 out.table("dimensionless");
                 out.number("bending", case.bending);
                 out.number("pressure", case.pressure);
+                out.number("gas_exponent", case.gas_exponent);
                 mesh(&mut out, case.mesh);
             }
             ProblemCase::Catalogue(case) => {
@@ -60,6 +61,11 @@ fn contact(out: &mut Lines, case: &ContactCase) {
         }
     }
     mesh(out, case.mesh);
+    out.table("device");
+    out.text("kind", case.device.name());
+    if let Some(stiffness) = case.device.stiffness() {
+        out.number("stiffness", stiffness);
+    }
 }
 
 fn shell(out: &mut Lines, shell: ShellCase) {

@@ -102,6 +102,11 @@ impl Made {
         }
     }
 
+    /// Something that was written already, or could not be.
+    pub(super) fn done<E: Display>(&mut self, written: Result<(), E>) {
+        self.take(written);
+    }
+
     /// What was made; an error is said.
     fn take<T, E: Display>(&mut self, made: Result<T, E>) -> Option<T> {
         made.map_err(|error| {

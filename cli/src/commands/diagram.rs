@@ -2,9 +2,11 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
+use super::report::{REPORT, report};
 use crate::arguments::DiagramArguments;
 use crate::case::ResolvedCase;
 use crate::exit::Exit;
+use crate::output::TraceResult;
 use crate::output::{Checkpoint, DiagramResult, Folder, branch_csv, diagram_json, diagram_summary};
 use crate::run::{Keep, Saved, run_diagram};
 use crate::{pictures, terminal};
@@ -25,7 +27,7 @@ pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
         terminal::error(error);
         Exit::BadInput
     };
-    let names = [DIAGRAM, CASE, pictures::DIAGRAM];
+    let names = [DIAGRAM, CASE, pictures::DIAGRAM, REPORT];
     let folder = match arguments.output.folder(&case.name, &names) {
         Ok(folder) => folder,
         Err(exit) => return exit,
@@ -59,7 +61,8 @@ pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
         Some(lazy) => lazy,
         None => &mut nowhere,
     };
-    let outcome = run_diagram(&case, saved, keep, &mut |at| observer.hear_of_diagram(at));
+    let outcome =
+        run_diagram(&case, arguments.report, saved, keep, &mut |at| observer.hear_of_diagram(at));
     observer.finish();
     let result = match outcome {
         Ok(result) => result,
@@ -140,6 +143,13 @@ fn deliver(
         made.file(CASE, case.to_toml());
         for branch in &result.branches {
             made.attempt(branch.csv(), branch_csv(&branch.trace.table));
+        }
+        if arguments.report {
+            let label =
+                |id: usize| if id == 0 { "first branch".into() } else { format!("branch {id}") };
+            let curves: Vec<(String, &TraceResult)> =
+                result.branches.iter().map(|branch| (label(branch.id), &branch.trace)).collect();
+            made.attempt(REPORT, report(&result.case, &result.stopped_detail, &curves));
         }
         if !arguments.output.no_pictures && result.has_curves() {
             made.attempt(pictures::DIAGRAM, pictures::draw_diagram(result));

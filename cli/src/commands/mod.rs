@@ -2,12 +2,15 @@
 
 mod check;
 mod completions;
+mod cycle;
 mod delivery;
 mod diagram;
 mod figure;
 mod list;
 mod map;
 mod progress;
+mod report;
+mod sweep;
 mod trace;
 
 use crate::arguments::{Arguments, CaseArguments, Command};
@@ -21,8 +24,11 @@ pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
         Command::Trace(arguments) => trace::trace(arguments),
         Command::Diagram(arguments) => diagram::diagram(arguments),
         Command::Figure(arguments) => figure::figure(arguments),
+        Command::Cycle(arguments) => cycle::cycle(arguments),
         Command::Check(arguments) => check::check(arguments),
         Command::Map(arguments) => map::map(arguments),
+        Command::Sweep(arguments) => sweep::sweep(arguments),
+        Command::Merge(arguments) => sweep::merge(arguments),
         Command::List => list::list(),
         Command::Completions { shell } => completions::completions(*shell),
     }

@@ -10,6 +10,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 const LENGTH: u64 = 1000;
 
+/// A flag that Ctrl-C sets.
+pub(super) fn stop_on_ctrl_c() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let heard = Arc::clone(&stop);
+    // the second Ctrl-C does not wait for the current step
+    let handler = move || {
+        if heard.swap(true, Ordering::SeqCst) {
+            std::process::exit(130);
+        }
+    };
+    if let Err(error) = ctrlc::set_handler(handler) {
+        terminal::err(&format!("note: Ctrl-C will not keep what was computed: {error}\n"));
+    }
+    stop
+}
+
 /// Shows progress and asks for a stop after Ctrl-C.
 pub(super) struct Observer {
     bar: Option<ProgressBar>,
@@ -21,17 +37,7 @@ pub(super) struct Observer {
 impl Observer {
     /// An observer; a quiet one, or one whom nobody watches, shows nothing.
     pub(super) fn new(path: Option<PathCase>, quiet: bool) -> Self {
-        let stop = Arc::new(AtomicBool::new(false));
-        let heard = Arc::clone(&stop);
-        // the second Ctrl-C does not wait for the current step
-        let handler = move || {
-            if heard.swap(true, Ordering::SeqCst) {
-                std::process::exit(130);
-            }
-        };
-        if let Err(error) = ctrlc::set_handler(handler) {
-            terminal::err(&format!("note: Ctrl-C will not keep what was computed: {error}\n"));
-        }
+        let stop = stop_on_ctrl_c();
         let bar = (!quiet && terminal::watched()).then(|| {
             let bar = ProgressBar::new(LENGTH);
             // how far a diagram is from its end nobody knows

@@ -2,12 +2,13 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
+use super::report::{REPORT, report};
 use crate::arguments::TraceArguments;
 use crate::case::ResolvedCase;
 use crate::exit::Exit;
 use crate::output::{Folder, TraceResult, branch_csv, events_json, summary};
 use crate::pictures;
-use crate::run::run_trace;
+use crate::run::{run_trace, run_trace_reported};
 use crate::terminal;
 
 const TABLE: &str = "branch.csv";
@@ -26,7 +27,8 @@ pub(super) fn trace(arguments: &TraceArguments) -> Exit {
         Err(exit) => return exit,
     };
     let mut observer = Observer::new(Some(case.path), arguments.output.quiet);
-    let outcome = run_trace(&case, &mut |progress| observer.hear(progress));
+    let run = if arguments.report { run_trace_reported } else { run_trace };
+    let outcome = run(&case, &mut |progress| observer.hear(progress));
     observer.finish();
     match outcome {
         Err(error) => {
@@ -39,7 +41,8 @@ pub(super) fn trace(arguments: &TraceArguments) -> Exit {
 
 /// The output folder, checked before the work starts; `None` when no files are wanted.
 fn folder(arguments: &TraceArguments, case: &str) -> Result<Option<Folder>, Exit> {
-    let names: Vec<&str> = [TABLE, EVENTS, CASE].into_iter().chain(pictures::NAMES).collect();
+    let names: Vec<&str> =
+        [TABLE, EVENTS, CASE, REPORT].into_iter().chain(pictures::NAMES).collect();
     arguments.output.folder(case, &names)
 }
 
@@ -54,6 +57,10 @@ fn deliver(
     if folder.is_some() {
         made.file(CASE, case.to_toml());
         made.attempt(TABLE, branch_csv(&result.table));
+        if arguments.report {
+            let curves = [("branch".to_owned(), result)];
+            made.attempt(REPORT, report(&result.case, &result.stopped_detail, &curves));
+        }
         if !arguments.output.no_pictures {
             made.files(pictures::draw_all(&result.pictures));
         }

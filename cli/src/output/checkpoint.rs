@@ -190,8 +190,8 @@ fn read<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, CheckpointError> 
 }
 
 /// The first line in which two texts differ.
-fn difference(kept: &str, asked: &str) -> String {
-    let mut lines = kept.lines().zip(asked.lines());
+pub(super) fn difference(kept: &str, asked: &str) -> String {
+    let mut lines = kept.lines().map(str::trim).zip(asked.lines().map(str::trim));
     match lines.find(|(a, b)| a != b) {
         Some((a, b)) => format!("there: {a}; here: {b}"),
         None => "one of them says more".to_owned(),

@@ -1,6 +1,6 @@
 //! `events.json`: special points, why the branch ended, what it cost.
 
-use super::result::{EventRecord, TraceResult};
+use super::result::{EventRecord, MaxwellRecord, TraceResult};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// The JSON, indented, with a newline at the end; NaN and infinities are null.
@@ -27,6 +27,9 @@ impl Serialize for Document<'_> {
         map.serialize_entry("case", &result.case)?;
         map.serialize_entry("parameter", &result.parameter)?;
         map.serialize_entry("events", &events)?;
+        if let Some(maxwell) = &result.maxwell {
+            map.serialize_entry("maxwell", &maxwell_of(maxwell))?;
+        }
         map.serialize_entry("stopped_because", &result.stopped_because.to_string())?;
         map.serialize_entry("stopped_detail", &result.stopped_detail)?;
         map.serialize_entry("points", &result.points)?;
@@ -50,7 +53,10 @@ impl Serialize for EventOf<'_> {
         map.serialize_entry("kind", &event.kind)?;
         map.serialize_entry("parameter", self.parameter)?;
         map.serialize_entry(self.parameter, &event.parameter)?;
-        map.serialize_entry("force", &event.force)?;
+        entry(&mut map, "z0", event.z0)?;
+        if self.parameter != "force" {
+            map.serialize_entry("force", &event.force)?;
+        }
         map.serialize_entry("deformation", &event.deformation)?;
         map.serialize_entry("energy_total", &event.energy_total)?;
         map.serialize_entry("unstable_before", &event.unstable_before)?;
@@ -70,6 +76,35 @@ impl Serialize for EventOf<'_> {
         if !event.observables.is_empty() {
             map.serialize_entry("observables", &Named(&event.observables))?;
         }
+        map.end()
+    }
+}
+
+/// Maxwell points as JSON.
+pub(super) fn maxwell_of(points: &[MaxwellRecord]) -> Vec<MaxwellOf<'_>> {
+    points.iter().map(MaxwellOf).collect()
+}
+
+/// A pair of states of equal potential; what both share is a number, the rest an array of two.
+pub(super) struct MaxwellOf<'a>(&'a MaxwellRecord);
+
+impl Serialize for MaxwellOf<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let point = self.0;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry(point.parameter, &point.value)?;
+        if point.parameter != "z0" {
+            map.serialize_entry("potential", &point.potential)?;
+            map.serialize_entry("z0", &point.z0)?;
+            map.serialize_entry("energy_totals", &point.energy)?;
+        } else {
+            map.serialize_entry("energy_total", &point.potential)?;
+        }
+        if point.parameter != "force" {
+            map.serialize_entry("force", &point.force)?;
+        }
+        map.serialize_entry("unstable", &point.unstable)?;
+        map.serialize_entry("error_estimate", &point.error_estimate)?;
         map.end()
     }
 }

@@ -121,6 +121,30 @@ impl Folder {
         }
     }
 
+    /// Make the folder and write a file from what `fill` says, likewise replaced at once; for files
+    /// that need not fit into memory.
+    ///
+    /// # Errors
+    /// When the system, or `fill`, refuses.
+    pub(crate) fn stream(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), FolderError> {
+        let target = self.path.join(name);
+        let write = || {
+            fs::create_dir_all(&self.path)?;
+            let file = self.temporary(&[])?;
+            let mut buffered = io::BufWriter::new(file);
+            fill(&mut buffered)?;
+            let file = buffered.into_inner().map_err(io::IntoInnerError::into_error)?;
+            file.as_file().sync_all()?;
+            file.persist(&target).map_err(|error| error.error)?;
+            Ok(())
+        };
+        write().map_err(|source| FolderError::Write { path: target.clone(), source })
+    }
+
     fn temporary(&self, bytes: &[u8]) -> io::Result<NamedTempFile> {
         let mut builder = Builder::new();
         builder.prefix(".arclen-");

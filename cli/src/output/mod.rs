@@ -1,6 +1,7 @@
 //! What a trace hands over, and how it becomes files and tables.
 
 mod checkpoint;
+mod cycle;
 mod diagram;
 mod events;
 mod folder;
@@ -8,18 +9,25 @@ mod map;
 mod number;
 mod result;
 mod summary;
+mod sweep;
 mod table;
 
 #[cfg(test)]
 pub(crate) mod tests;
 
 pub(crate) use checkpoint::Checkpoint;
+pub(crate) use cycle::{CycleResult, FoldRecord, JumpRecord, PathRow, StretchRecord};
+pub(crate) use cycle::{cycle_json, cycle_summary, cycle_table};
 pub(crate) use diagram::{BranchRecord, DiagramResult, From, NearRecord};
 pub(crate) use diagram::{diagram_json, diagram_summary};
 pub(crate) use events::events_json;
 pub(crate) use folder::Folder;
 pub(crate) use map::{MapCurve, MapPoint, MapResult, map_json, map_summary};
-pub(crate) use result::{Cell, ContactRow, EventRecord, FormRecord, Table};
+pub(crate) use result::{Cell, ContactRow, EventRecord, FormRecord, MaxwellRecord, Table};
 pub(crate) use result::{Pictures, TraceResult};
 pub(crate) use summary::summary;
+pub(crate) use sweep::{CaseRecord, Kept, Status, Store, StoreError, SweepResult, events_table};
+pub(crate) use sweep::{
+    of_one_sweep, phase_csv, sweep_json, sweep_summary, write_curves, write_events,
+};
 pub(crate) use table::branch_csv;

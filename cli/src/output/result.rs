@@ -2,17 +2,22 @@
 
 use crate::pictures::{Curve, Profile, Shape};
 use continuation::StopReason;
+use serde::{Deserialize, Serialize};
 
 /// One cell of a table.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Cell {
     /// A number; anything but a finite one is written as an empty cell.
+    #[serde(rename = "r")]
     Real(f64),
     /// A count.
+    #[serde(rename = "n")]
     Count(usize),
     /// A word.
+    #[serde(rename = "t")]
     Text(String),
     /// Not defined.
+    #[serde(rename = "e")]
     Empty,
 }
 
@@ -47,7 +52,7 @@ impl From<&str> for Cell {
 }
 
 /// The points of a branch: named columns and rows in order along the branch.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Table {
     columns: Vec<String>,
     rows: Vec<Vec<Cell>>,
@@ -79,10 +84,33 @@ impl Table {
         self
     }
 
+    /// The numbers of a column, NaN where there is none; empty without such a column.
+    pub(crate) fn numbers(&self, column: &str) -> Vec<f64> {
+        let Some(at) = self.columns.iter().position(|name| name == column) else {
+            return Vec::new();
+        };
+        let number = |row: &Vec<Cell>| match row[at] {
+            Cell::Real(value) => value,
+            Cell::Count(count) => count as f64,
+            _ => f64::NAN,
+        };
+        self.rows.iter().map(number).collect()
+    }
+
     /// Add a row; a short one is filled up with empty cells, what is too long is cut.
     pub(crate) fn push(&mut self, mut row: Vec<Cell>) {
         row.resize(self.columns.len(), Cell::Empty);
         self.rows.push(row);
+    }
+
+    /// Changes all numbers of a column.
+    pub(crate) fn convert(&mut self, column: &str, change: impl Fn(f64) -> f64) {
+        let Some(at) = self.columns.iter().position(|name| name == column) else { return };
+        for row in &mut self.rows {
+            if let Cell::Real(value) = row[at] {
+                row[at] = Cell::Real(change(value));
+            }
+        }
     }
 
     /// Names of the columns.
@@ -184,6 +212,8 @@ pub(crate) struct EventRecord {
     pub(crate) kind: String,
     /// Value of the continued parameter.
     pub(crate) parameter: Option<f64>,
+    /// Plate distance, where the continued parameter is another.
+    pub(crate) z0: Option<f64>,
     /// Force.
     pub(crate) force: Option<f64>,
     /// Deformation.
@@ -202,6 +232,27 @@ pub(crate) struct EventRecord {
     pub(crate) observables: Vec<(String, f64)>,
     /// What the normal form says.
     pub(crate) form: FormRecord,
+}
+
+/// Two states of equal total potential at one value of the device's parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct MaxwellRecord {
+    /// Name of the parameter.
+    pub(crate) parameter: &'static str,
+    /// Its value.
+    pub(crate) value: f64,
+    /// Total potential of both.
+    pub(crate) potential: f64,
+    /// Plate distances.
+    pub(crate) z0: [f64; 2],
+    /// Forces.
+    pub(crate) force: [f64; 2],
+    /// Energies without the device.
+    pub(crate) energy: [f64; 2],
+    /// Unstable modes.
+    pub(crate) unstable: [Option<usize>; 2],
+    /// Estimated error of the parameter.
+    pub(crate) error_estimate: f64,
 }
 
 /// The normal form of a special point; what does not apply is `None`.
@@ -239,6 +290,8 @@ pub(crate) struct TraceResult {
     pub(crate) table: Table,
     /// The special points, in order along the branch.
     pub(crate) events: Vec<EventRecord>,
+    /// Pairs of states of equal potential; `None` where that has no meaning.
+    pub(crate) maxwell: Option<Vec<MaxwellRecord>>,
     /// Why the branch ended.
     pub(crate) stopped_because: StopReason,
     /// The same in a sentence; may be empty.
@@ -253,6 +306,17 @@ pub(crate) struct TraceResult {
     pub(crate) seconds: f64,
     /// What the pictures show.
     pub(crate) pictures: Pictures,
+}
+
+impl TraceResult {
+    /// The points that are special, and their kinds.
+    pub(crate) fn marked_points(&self) -> impl Iterator<Item = (usize, &str)> {
+        let column = self.table.columns().iter().position(|name| name == "event");
+        self.table.rows().iter().enumerate().filter_map(move |(point, row)| match &row[column?] {
+            Cell::Text(kind) => Some((point, kind.as_str())),
+            _ => None,
+        })
+    }
 }
 
 /// What the pictures of a trace show; a picture without data is not drawn.
@@ -272,4 +336,6 @@ pub(crate) struct Pictures {
     pub(crate) energies: Vec<Curve>,
     /// First observable against the parameter, for other problems; with the axes' labels.
     pub(crate) diagram: Option<(String, String, Curve)>,
+    /// States along the branch, for a report, if one was asked for.
+    pub(crate) states: Vec<report::State>,
 }

@@ -17,6 +17,8 @@ pub(super) struct Axis {
     pub(super) unit: f64,
     /// Title, a power of ten included where the labels need one.
     pub(super) title: String,
+    /// Whether places on it are logarithms to base ten.
+    logarithmic: bool,
 }
 
 /// Data that are nowhere larger than this are what rounding leaves of zero.
@@ -57,11 +59,23 @@ impl Axis {
         let last = (high / step).floor() as i64;
         let ticks = (first..=last.min(first + 50)).map(|i| i as f64 * step).collect();
         let decimals = (-(step * 1.000_001).log10().floor()).clamp(0.0, 12.0) as usize;
-        Axis { low, high, ticks, decimals, unit, title }
+        Axis { low, high, ticks, decimals, unit, title, logarithmic: false }
+    }
+
+    /// An axis from `low` to `high`, logarithms to base ten, with ticks at powers of ten.
+    pub(super) fn of_logarithms(title: &str, low: f64, high: f64) -> Self {
+        let (first, last) = (low.ceil() as i32, high.floor() as i32);
+        let every = ((last - first) / 8 + 1).max(1) as usize;
+        let ticks = (first..=last).step_by(every).map(f64::from).collect();
+        let title = title.to_owned();
+        Axis { low, high, ticks, decimals: 0, unit: 1.0, title, logarithmic: true }
     }
 
     /// The label of a tick.
     pub(super) fn label(&self, value: f64) -> String {
+        if self.logarithmic {
+            return format!("10{}", superscript(value as i32));
+        }
         let text = format!("{value:.*}", self.decimals);
         let zero = text.bytes().all(|b| matches!(b, b'0' | b'-' | b'.'));
         if zero { "0".to_string() } else { text.replace('-', "−") }
@@ -69,7 +83,7 @@ impl Axis {
 
     /// Whether zero lies inside.
     pub(super) fn has_zero(&self) -> bool {
-        self.low < 0.0 && self.high > 0.0
+        self.low < 0.0 && self.high > 0.0 && !self.logarithmic
     }
 }
 

@@ -31,6 +31,17 @@ pub(super) struct Line {
     pub(super) dashed: bool,
 }
 
+/// A coloured rectangle, in the units of the axes' labels.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tile {
+    /// One corner.
+    pub(super) from: (f64, f64),
+    /// The opposite one.
+    pub(super) to: (f64, f64),
+    /// Its colour.
+    pub(super) color: RGBColor,
+}
+
 /// A line of the legend.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Entry {
@@ -40,6 +51,13 @@ pub(super) enum Entry {
         color: RGBColor,
         /// Solid or dashed.
         dashed: bool,
+        /// What it stands for.
+        label: String,
+    },
+    /// A sample of a tile.
+    Tile {
+        /// Its colour.
+        color: RGBColor,
         /// What it stands for.
         label: String,
     },
@@ -101,6 +119,11 @@ struct Frame {
 impl Chart {
     /// The chart as SVG.
     pub(super) fn svg(&self) -> Result<String, DrawError> {
+        self.svg_over(&[])
+    }
+
+    /// The chart as SVG, on top of tiles.
+    pub(super) fn svg_over(&self, tiles: &[Tile]) -> Result<String, DrawError> {
         let frame = self.frame();
         let rows = 20 * PX + ROW * self.legend.len() as i32;
         let width = (frame.right + RIGHT + self.legend_width()) as u32;
@@ -108,7 +131,7 @@ impl Chart {
         let mut svg = String::new();
         let outcome = {
             let root = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
-            self.draw(&root, frame).and_then(|()| Ok(root.present()?))
+            self.draw(&root, frame, tiles).and_then(|()| Ok(root.present()?))
         };
         outcome.map_err(|error| DrawError {
             picture: self.y.title.clone(),
@@ -133,13 +156,13 @@ impl Chart {
 
     fn legend_width(&self) -> i32 {
         let longest = self.legend.iter().map(|entry| match entry {
-            Entry::Line { label, .. } => label.chars().count(),
+            Entry::Line { label, .. } | Entry::Tile { label, .. } => label.chars().count(),
             Entry::Marker { kind } => kind.chars().count(),
         });
         longest.max().map_or(0, |chars| 62 * PX + 8 * PX * chars as i32)
     }
 
-    fn draw(&self, root: &Area<'_>, frame: Frame) -> Outcome {
+    fn draw(&self, root: &Area<'_>, frame: Frame, tiles: &[Tile]) -> Outcome {
         root.fill(&WHITE)?;
         if !self.title.is_empty() {
             let style = text(19).pos(Pos::new(HPos::Left, VPos::Center));
@@ -152,6 +175,9 @@ impl Chart {
                 self.y.low..self.y.high,
                 (frame.left..frame.right, frame.bottom..frame.top),
             ));
+        for Tile { from, to, color } in tiles {
+            plot.draw(&Rectangle::new([*from, *to], color.filled()))?;
+        }
         self.axes(root, &plot, frame)?;
         for line in &self.lines {
             draw_line(&plot, line)?;
@@ -213,6 +239,11 @@ impl Chart {
                     } else {
                         root.draw(&PathElement::new(points, style))?;
                     }
+                    label
+                }
+                Entry::Tile { color, label } => {
+                    let corners = [(left + 6 * PX, y - 8 * PX), (left + 28 * PX, y + 8 * PX)];
+                    root.draw(&Rectangle::new(corners, color.filled()))?;
                     label
                 }
                 Entry::Marker { kind } => {

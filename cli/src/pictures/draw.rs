@@ -6,10 +6,10 @@ use super::data::{Curve, Mark, Profile, Shape, drawable};
 use super::palette::{FAINT, of_quantity, of_state};
 use crate::case::document::shown;
 
-const FORCE: &str = "force F/√(χ k_b)";
+pub(super) const FORCE: &str = "force F/√(χ k_b)";
 pub(super) const DISTANCE: &str = "plate distance z₀/R₀";
 const DEFORMATION: &str = "deformation Δ/R₀";
-const WIDE: (u32, u32) = (620, 440);
+pub(super) const WIDE: (u32, u32) = (620, 440);
 
 /// Force against deformation.
 pub(super) fn force_deformation(title: &str, curve: &Curve) -> Result<String, DrawError> {
@@ -179,7 +179,11 @@ fn chart(title: &str, x: &str, y: &str, curves: &[Curve]) -> Chart {
 }
 
 /// The stretches of a curve as lines, in the units of the axes.
-fn curve_lines(curve: &Curve, color: super::palette::Color, units: (f64, f64)) -> Vec<Line> {
+pub(super) fn curve_lines(
+    curve: &Curve,
+    color: super::palette::Color,
+    units: (f64, f64),
+) -> Vec<Line> {
     curve
         .stretches()
         .into_iter()
@@ -197,7 +201,7 @@ fn state_entry(at: usize, label: &str, unstable: bool) -> Entry {
 }
 
 /// All numbers of one field.
-fn values<'a, T>(
+pub(super) fn values<'a, T>(
     items: &'a [T],
     field: impl Fn(&'a T) -> &'a Vec<f64> + 'a,
 ) -> impl Iterator<Item = f64> + 'a {

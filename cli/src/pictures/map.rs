@@ -40,6 +40,7 @@ pub(crate) fn draw_map(result: &MapResult) -> Result<String, DrawError> {
     }
     let y = match result.parameter.as_str() {
         "z0" => DISTANCE,
+        "alpha" => "contact angle α (degrees)",
         other => other,
     };
     draw::map(&result.case, &result.key, y, &curves)

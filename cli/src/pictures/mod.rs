@@ -5,19 +5,23 @@
 
 mod axis;
 mod chart;
+mod cycle;
 mod data;
 mod draw;
 mod map;
 mod palette;
+mod phase;
 mod sheet;
 
 #[cfg(test)]
 pub(crate) mod tests;
 
 pub(crate) use chart::DrawError;
+pub(crate) use cycle::{CyclePictures, LOOP, draw_cycle};
 pub(crate) use data::Mark;
 pub(crate) use data::{Curve, Profile, Shape};
 pub(crate) use map::{MAP, draw_map};
+pub(crate) use phase::{PHASE, draw_phase};
 pub(crate) use sheet::{
     BOLD, FAMILY, FONT, Ink, Panel, PanelLine, Pen, PngError, Sheet, escape, png,
 };

@@ -1,5 +1,6 @@
 //! Colours that people with any colour vision can tell apart (Okabe and Ito), and marker shapes.
 
+use crate::phase::Class;
 use plotters::style::BLACK;
 pub(super) use plotters::style::RGBColor as Color;
 use plotters::style::RGBColor;
@@ -74,5 +75,16 @@ pub(super) fn form(kind: &str) -> Form {
         other if other.ends_with("-maximum") => Form::Diamond,
         other if other.ends_with("-minimum") => Form::HollowDiamond,
         _ => Form::Cross,
+    }
+}
+
+/// The colour of a class of a phase diagram: apart in lightness too.
+pub(super) fn of_class(class: Class) -> RGBColor {
+    match class {
+        Class::Flat => SKY,
+        Class::Buckles => ORANGE,
+        Class::BypassesBuckling => BLUE,
+        Class::Hysteresis => VERMILLION,
+        Class::Unknown => GRID,
     }
 }

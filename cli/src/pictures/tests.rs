@@ -89,6 +89,7 @@ pub(crate) fn two_folds() -> Pictures {
         shapes,
         film_pressure,
         energies,
+        states: Vec::new(),
     }
 }
 
@@ -142,6 +143,7 @@ fn degenerate_data_are_drawn_without_complaint() {
                     film_pressure: vec![profile],
                     energies: vec![curve.clone(), curve.clone()],
                     diagram: Some((String::new(), String::new(), curve)),
+                    states: Vec::new(),
                 };
                 for (name, svg) in draw_all(&pictures).unwrap() {
                     let svg = String::from_utf8(svg).unwrap();

@@ -2,18 +2,23 @@
 
 use super::form::{StabilityColumns, certified, form};
 use super::{Observer, RunError, listen, settings};
-use crate::case::{ContactCase, Law, ResolvedCase};
-use crate::output::{ContactRow, EventRecord, Pictures, Table, TraceResult};
+use crate::case::{ContactCase, DeviceCase, Law, ResolvedCase};
+use crate::output::{ContactRow, EventRecord, MaxwellRecord, Pictures, Table, TraceResult};
 use crate::pictures::{Curve, Mark, Profile, Shape};
-use continuation::{Point, Settings, TraceError};
-use shell_contact::{ContactBranch, ContactProblem, Dimensionless, Mesh, Shell, trace_contact};
+use continuation::{Branch, Point, Problem, Settings, TraceError};
+use shell_contact::device::{MaxwellPoint, StartError, maxwell_points, trace_loaded};
+use shell_contact::{ContactBranch, ContactProblem, Device, LoadedProblem};
+use shell_contact::{Dimensionless, Mesh, Shell, trace_contact};
 use std::time::Instant;
 
 /// Samples along the meridian in pictures of shapes and profiles.
-const SAMPLES: usize = 801;
+pub(super) const SAMPLES: usize = 801;
 
 /// Longest step by default, in R0: short enough for curves that look smooth.
 const SMOOTH: f64 = 0.01;
+
+/// Fewest steps over the range of a device's parameter by default.
+const STEPS: f64 = 100.0;
 
 /// Trace a contact case.
 pub(super) fn run(
@@ -21,24 +26,125 @@ pub(super) fn run(
     contact: &ContactCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
-    let clock = Instant::now();
-    let (problem, traced) = branch(case, contact, observer)?;
-    let seconds = clock.elapsed().as_secs_f64();
-    let pictures = pictures(&case.name, &problem, &traced);
-    Ok(TraceResult { pictures, ..result(case, &traced, seconds) })
+    let Traced { problem, branch, maxwell, seconds } = traced(case, contact, observer)?;
+    let pictures = pictures(&case.name, &problem, &branch);
+    Ok(TraceResult { pictures, maxwell: Some(maxwell), ..result(case, &branch, seconds) })
 }
 
-/// The branch itself, and its problem.
+/// The same with the states along the branch.
+pub(super) fn run_reported(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    let Traced { problem, branch, maxwell, seconds } = traced(case, contact, observer)?;
+    let states = states(&problem, &branch.branch, branch.branch.points.len());
+    let pictures = Pictures { states, ..pictures(&case.name, &problem, &branch) };
+    Ok(TraceResult { pictures, maxwell: Some(maxwell), ..result(case, &branch, seconds) })
+}
+
+/// The same without what pictures show.
+pub(super) fn run_plain(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    let Traced { branch, maxwell, seconds, .. } = traced(case, contact, observer)?;
+    Ok(TraceResult { maxwell: Some(maxwell), ..result(case, &branch, seconds) })
+}
+
+/// A branch under the case's device.
+struct Traced {
+    problem: ContactProblem,
+    branch: ContactBranch,
+    maxwell: Vec<MaxwellRecord>,
+    seconds: f64,
+}
+
+fn traced(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    observer: &mut Observer<'_>,
+) -> Result<Traced, RunError> {
+    let clock = Instant::now();
+    let problem = shell(case, contact)?;
+    let (branch, maxwell) = follow(case, device(contact), &problem, observer)?;
+    Ok(Traced { problem, branch, maxwell, seconds: clock.elapsed().as_secs_f64() })
+}
+
+/// The branch itself under a held plate, and its problem.
 pub(crate) fn branch(
     case: &ResolvedCase,
     contact: &ContactCase,
     observer: &mut Observer<'_>,
 ) -> Result<(ContactProblem, ContactBranch), RunError> {
-    let problem = problem(case, contact)?;
+    let problem = shell(case, contact)?;
     let start = case.path.start;
     let traced = trace_contact(&problem, start, path(case), &mut listen(observer))
         .map_err(|detail| no_start(case, detail))?;
     Ok((problem, traced))
+}
+
+/// The branch in the device's parameter, and its Maxwell points.
+pub(super) fn follow(
+    case: &ResolvedCase,
+    device: Device,
+    problem: &ContactProblem,
+    observer: &mut Observer<'_>,
+) -> Result<(ContactBranch, Vec<MaxwellRecord>), RunError> {
+    let (start, listen) = (case.path.start, &mut listen(observer));
+    let (traced, points) = if device == Device::Grip {
+        let traced = trace_contact(problem, start, path(case), listen)
+            .map_err(|detail| no_start(case, detail))?;
+        let points = maxwell_points(problem, &traced.branch);
+        (traced, points)
+    } else {
+        let loaded = LoadedProblem::new(problem, device).map_err(|e| not_held(case, e.into()))?;
+        let traced = trace_loaded(&loaded, start, loaded_path(case), listen)
+            .map_err(|detail| not_held(case, detail))?;
+        let points = maxwell_points(&loaded, &traced.branch);
+        (traced, points)
+    };
+    Ok((traced, points.iter().map(|point| maxwell(device, point)).collect()))
+}
+
+fn maxwell(device: Device, point: &MaxwellPoint) -> MaxwellRecord {
+    MaxwellRecord {
+        parameter: device.parameter_name(),
+        value: point.parameter,
+        potential: point.potential,
+        z0: point.z0,
+        force: point.force,
+        energy: point.energy,
+        unstable: point.unstable,
+        error_estimate: point.error_estimate,
+    }
+}
+
+/// The device of a case.
+pub(super) fn device(contact: &ContactCase) -> Device {
+    match contact.device {
+        DeviceCase::Grip => Device::Grip,
+        DeviceCase::DeadLoad => Device::DeadLoad,
+        DeviceCase::Cantilever { stiffness } => Device::Cantilever { stiffness },
+    }
+}
+
+/// The tracer's settings under a device.
+pub(super) fn loaded_path(case: &ResolvedCase) -> Settings {
+    let settings = path(case);
+    if case.path.max_step.is_some() {
+        return settings;
+    }
+    // the device's parameter counts in the length of a step
+    let range = (case.path.end - case.path.start).abs();
+    let max_step = settings.max_step.map(|step| step.max(range / STEPS));
+    Settings { max_step, ..settings }
+}
+
+/// No stable state to start from under a device.
+pub(super) fn not_held(case: &ResolvedCase, detail: StartError) -> RunError {
+    RunError::NotHeld { case: case.name.clone(), start: case.path.start, detail }
 }
 
 /// The tracer's settings.
@@ -74,25 +180,42 @@ pub(crate) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) 
         certified: certified(branch),
         newton_iterations: branch.statistics.newton_iterations,
         seconds,
+        maxwell: None,
         pictures: Pictures::default(),
     }
 }
 
-/// The problem that a case describes.
+/// The problem that a case describes, for what knows no device.
 pub(super) fn problem(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+) -> Result<ContactProblem, RunError> {
+    if contact.device != DeviceCase::Grip {
+        let (case, device) = (case.name.clone(), contact.device.name());
+        return Err(RunError::Device { case, device });
+    }
+    shell(case, contact)
+}
+
+/// The shell of a case, whatever holds its plates.
+pub(super) fn shell(
     case: &ResolvedCase,
     contact: &ContactCase,
 ) -> Result<ContactProblem, RunError> {
     build(contact).map_err(|error| RunError::Parameters { case: case.name.clone(), error })
 }
 
-fn build(contact: &ContactCase) -> Result<ContactProblem, shell_contact::ParameterError> {
-    let law = match contact.shell.law {
+/// The law of the membrane.
+pub(super) fn law(law: Law) -> shell_contact::Law {
+    match law {
         Law::Hooke => shell_contact::Law::Hooke,
         Law::MooneyRivlin { b } => shell_contact::Law::MooneyRivlin { b },
         Law::Skalak => shell_contact::Law::Skalak,
-    };
-    let shell = Shell { law, poisson: contact.shell.poisson };
+    }
+}
+
+fn build(contact: &ContactCase) -> Result<ContactProblem, shell_contact::ParameterError> {
+    let shell = Shell { law: law(contact.shell.law), poisson: contact.shell.poisson };
     let g = &contact.groups;
     let groups = Dimensionless {
         bending: g.bending,
@@ -110,16 +233,18 @@ fn build(contact: &ContactCase) -> Result<ContactProblem, shell_contact::Paramet
 }
 
 /// One point in the contract's columns.
-fn row(traced: &ContactBranch, index: usize, point: &Point) -> ContactRow {
+pub(super) fn row(traced: &ContactBranch, index: usize, point: &Point) -> ContactRow {
     let branch = &traced.branch;
     let observed = |name: &str| {
         let at = branch.observables.iter().position(|n| n == name);
         at.map_or(f64::NAN, |k| point.observables[k])
     };
+    // the continued parameter, unless a device has another
+    let z0 = if branch.parameter == "z0" { point.p } else { observed("z0") };
     ContactRow {
         point: index,
-        z0: point.p,
-        deformation: traced.deformation(point.p).unwrap_or(f64::NAN),
+        z0,
+        deformation: traced.deformation(z0).unwrap_or(f64::NAN),
         force: observed("force"),
         unstable: point.unstable,
         pole_height: observed("pole_height"),
@@ -139,9 +264,13 @@ fn row(traced: &ContactBranch, index: usize, point: &Point) -> ContactRow {
 fn tabulate(traced: &ContactBranch) -> (Table, Vec<EventRecord>) {
     let branch = &traced.branch;
     let stability = StabilityColumns::of(branch);
-    let mut table = Table::contact().and(stability.titles());
+    let loaded = branch.parameter != "z0";
+    let base = branch.parameter == "base";
+    let own = base.then(|| branch.parameter.clone());
+    let mut table = Table::contact().and(own.into_iter().collect()).and(stability.titles());
     for (index, point) in branch.points.iter().enumerate() {
         let mut cells = row(traced, index, point).cells();
+        cells.extend(base.then(|| point.p.into()));
         cells.extend(stability.cells(point));
         table.push(cells);
     }
@@ -150,8 +279,9 @@ fn tabulate(traced: &ContactBranch) -> (Table, Vec<EventRecord>) {
         EventRecord {
             kind: event.kind.to_string(),
             parameter: Some(event.p),
+            z0: loaded.then_some(at.z0),
             force: Some(at.force),
-            deformation: traced.deformation(event.p),
+            deformation: traced.deformation(at.z0),
             energy_total: Some(at.energy_total),
             unstable_before: event.unstable_before,
             unstable_after: event.unstable_after,
@@ -188,17 +318,19 @@ fn pictures(title: &str, problem: &ContactProblem, traced: &ContactBranch) -> Pi
     let (mut shapes, mut film_pressure) = (Vec::new(), Vec::new());
     for index in chosen(&rows) {
         let point = &branch.points[index];
-        let parameters = problem.parameters_at(point.p);
-        let Ok(profile) = problem.profile(&point.u, &parameters, SAMPLES) else { continue };
-        let label = match traced.deformation(point.p) {
+        let z0 = rows[index].z0;
+        let parameters = problem.parameters_at(z0);
+        let u = &point.u[..problem.dim()];
+        let Ok(profile) = problem.profile(u, &parameters, SAMPLES) else { continue };
+        let label = match traced.deformation(z0) {
             Some(d) => format!("Δ/R₀ = {d:.3}"),
-            None => format!("z₀/R₀ = {:.3}", point.p),
+            None => format!("z₀/R₀ = {z0:.3}"),
         };
         shapes.push(Shape {
             label: label.clone(),
             sigma: profile.sigma.clone(),
             z: profile.z,
-            plate: point.p,
+            plate: z0,
             unstable: unstable[index],
         });
         film_pressure.push(Profile {
@@ -228,7 +360,7 @@ fn pictures(title: &str, problem: &ContactProblem, traced: &ContactBranch) -> Pi
         } else {
             Vec::new()
         },
-        diagram: None,
+        ..Pictures::default()
     }
 }
 
@@ -250,4 +382,40 @@ fn chosen(rows: &[ContactRow]) -> Vec<usize> {
     }
     chosen.dedup();
     chosen
+}
+
+/// Samples along the meridian from which the points of a report are chosen.
+const FINE: usize = 601;
+/// Points of a meridian in a report, and states in all, so that it stays a file to be sent about.
+const OUTLINE: usize = 110;
+const STATES: usize = 800;
+
+/// The states along a branch for a report of `points` points in all: every one, or as many as there
+/// is room for and those at special points.
+pub(super) fn states(
+    problem: &ContactProblem,
+    branch: &Branch,
+    points: usize,
+) -> Vec<report::State> {
+    let every = points.div_ceil(STATES).max(1);
+    let last = branch.points.len().saturating_sub(1);
+    let mut states = Vec::new();
+    for (index, point) in branch.points.iter().enumerate() {
+        if index % every != 0 && index != last && point.event.is_none() {
+            continue;
+        }
+        // under a device the plate's distance is the last unknown
+        let plate = point.u.get(problem.dim()).copied().unwrap_or(point.p);
+        let parameters = problem.parameters_at(plate);
+        let u = &point.u[..problem.dim()];
+        let Ok(profile) = problem.profile(u, &parameters, FINE) else { continue };
+        let outline = report::Outline {
+            sigma: profile.sigma,
+            z: profile.z,
+            pressure: profile.disjoining_pressure,
+        };
+        let outline = outline.thinned(OUTLINE);
+        states.push(report::State { point: index, plate, outline });
+    }
+    states
 }

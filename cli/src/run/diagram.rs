@@ -1,6 +1,6 @@
 //! Whole diagrams, of every kind of problem.
 
-use super::{RunError, contact, general};
+use super::{RunError, contact, general, ring_load};
 use crate::case::{ProblemCase, ResolvedCase};
 use crate::output::{BranchRecord, DiagramResult, From, NearRecord, TraceResult};
 use crate::pictures::{Curve, Mark};
@@ -108,12 +108,14 @@ impl Visitor for Exploration<'_, '_> {
     }
 }
 
-/// Explore the diagram of a case, from what was kept of it.
+/// Explore the diagram of a case, from what was kept of it; `reported` also takes the states along
+/// the branches, for a report.
 ///
 /// # Errors
 /// When there is no result at all, or what was kept is of another diagram.
 pub(crate) fn run_diagram(
     case: &ResolvedCase,
+    reported: bool,
     saved: Saved,
     keep: &mut dyn Keep,
     observer: &mut Observer<'_>,
@@ -147,6 +149,7 @@ pub(crate) fn run_diagram(
                 error => RunError::Diagram { case: case.name.clone(), error },
             })?;
             let mut zero = None;
+            let points = diagram.branches.iter().map(|one| one.branch.points.len()).sum();
             Ok(result(
                 case,
                 diagram,
@@ -156,14 +159,44 @@ pub(crate) fn run_diagram(
                     let traced = ContactBranch::new(branch, zero);
                     zero = traced.zero_force;
                     let curve = curve(&traced.branch, "force");
-                    (contact::result(case, &traced, 0.0), curve)
+                    let mut result = contact::result(case, &traced, 0.0);
+                    if reported {
+                        result.pictures.states = contact::states(&problem, &traced.branch, points);
+                    }
+                    (result, curve)
                 },
             ))
         }
-        ProblemCase::RingLoad(_) => Err(RunError::NotAvailable {
-            case: case.name.clone(),
-            problem: "ring-load".to_string(),
-        }),
+        ProblemCase::RingLoad(ring) => {
+            let ring_load::Start { problem, u, p } = ring_load::start(case, ring)?;
+            let setup = Setup {
+                parameter: "alpha",
+                u,
+                p,
+                settings: Settings::default(),
+                watches: ring_load::watches(),
+            };
+            let mut in_degrees = |at: DiagramProgress| {
+                let parameter = at.branch.parameter.to_degrees();
+                observer(DiagramProgress {
+                    branch: super::Progress { parameter, ..at.branch },
+                    ..at
+                })
+            };
+            let mut exploration = explore(ring_load::path(&case.path), keep, &mut in_degrees);
+            let domain = &mut exploration.settings.trace.domain;
+            *domain = domain.map(|(low, high)| (low.to_radians(), high.to_radians()));
+            let explored = exploration.run(&problem, &setup);
+            let (diagram, seconds) = explored.map_err(|error| match error {
+                DiagramError::Trace(detail) => ring_load::no_start(case, detail),
+                error => RunError::Diagram { case: case.name.clone(), error },
+            })?;
+            let diagram = ring_load::diagram_in_degrees(diagram);
+            Ok(result(case, diagram, seconds, ring_load::AXES, &mut |branch| {
+                let curve = ring_load::curve(&branch);
+                (ring_load::result(case, &branch, 0.0), curve)
+            }))
+        }
         ProblemCase::Catalogue(problem) => {
             let (entry, request) = general::request(case, problem)?;
             let explored = entry

@@ -139,6 +139,7 @@ pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> Trac
         parameter: branch.parameter.clone(),
         table,
         events,
+        maxwell: None,
         stopped_because: branch.stopped.reason,
         stopped_detail: branch.stopped.detail.clone(),
         points: branch.points.len(),

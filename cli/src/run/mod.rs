@@ -2,13 +2,18 @@
 //! out.
 
 mod contact;
+mod cycle;
 mod diagram;
 mod form;
 mod general;
 mod map;
+mod ring_load;
+mod sweep;
 
 pub(crate) use contact::{branch as contact_branch, result as contact_result};
+pub(crate) use cycle::run_cycle;
 pub(crate) use map::run_map;
+pub(crate) use sweep::{Outcome, run_sweep};
 
 use crate::case::{CatalogueEntry, PathCase, ProblemCase, ResolvedCase};
 use crate::output::TraceResult;
@@ -67,6 +72,45 @@ pub(crate) enum RunError {
         /// What happened.
         error: continuation::diagram::DiagramError,
     },
+    /// No stable state under a device.
+    #[error("{case}: path.start = {start}: {detail}; choose another start, or another device")]
+    NotHeld {
+        /// Name of the case.
+        case: String,
+        /// The start asked for.
+        start: f64,
+        /// What happened.
+        detail: shell_contact::device::StartError,
+    },
+    /// A device where only a grip can be.
+    #[error(
+        "{case}: device.kind = \"{device}\": only trace and cycle know devices; leave out the table \
+         [device], or say --set device.kind=grip"
+    )]
+    Device {
+        /// Name of the case.
+        case: String,
+        /// The device.
+        device: &'static str,
+    },
+    /// A problem without plates.
+    #[error("{case}: problem \"{problem}\": a cycle needs plates: problem = \"contact\"")]
+    NoPlates {
+        /// Name of the case.
+        case: String,
+        /// Name of the problem.
+        problem: String,
+    },
+    /// A cycle that cannot begin.
+    #[error("{case}: path.start = {start}: {detail}; choose another start")]
+    Cycle {
+        /// Name of the case.
+        case: String,
+        /// The start asked for.
+        start: f64,
+        /// What happened.
+        detail: shell_contact::device::CycleError,
+    },
     /// Not even the first point could be computed.
     #[error("{case}: path.start = {start}: {detail}; {remedy}")]
     NoStart {
@@ -97,11 +141,30 @@ pub(crate) fn run_trace(
 ) -> Result<TraceResult, RunError> {
     match &case.problem {
         ProblemCase::Contact(contact) => contact::run(case, contact, observer),
-        ProblemCase::RingLoad(_) => Err(RunError::NotAvailable {
-            case: case.name.clone(),
-            problem: "ring-load".to_string(),
-        }),
+        ProblemCase::RingLoad(ring) => ring_load::run(case, ring, observer),
         ProblemCase::Catalogue(problem) => general::run(case, problem, observer),
+    }
+}
+
+/// The same with the states along the branch, for a report.
+///
+/// # Errors
+/// When there is no result at all.
+pub(crate) fn run_trace_reported(
+    case: &ResolvedCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    match &case.problem {
+        ProblemCase::Contact(contact) => contact::run_reported(case, contact, observer),
+        _ => run_trace(case, observer),
+    }
+}
+
+/// The same without what pictures show, for cases of which there are many.
+fn run_plain(case: &ResolvedCase, observer: &mut Observer<'_>) -> Result<TraceResult, RunError> {
+    match &case.problem {
+        ProblemCase::Contact(contact) => contact::run_plain(case, contact, observer),
+        _ => run_trace(case, observer),
     }
 }
 

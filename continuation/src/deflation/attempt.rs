@@ -83,12 +83,13 @@ impl<'a, P: Problem> Solver<'a, P> {
         }
     }
 
-    /// Searches from `start`; the solution is left in `u`. `reach` is a length that matters.
+    /// Searches from `start`; the solution is left in `u`. `reach` is a length that matters, `bound`
+    /// how far from the start the attempt may go.
     pub(super) fn attempt(
         &mut self,
         known: &mut Known<'a, P>,
         start: &[f64],
-        reach: f64,
+        (reach, bound): (f64, Option<f64>),
         damping: Damping,
         limits: &NewtonSettings,
     ) -> Result<Converged, Failure> {
@@ -152,7 +153,9 @@ impl<'a, P: Problem> Solver<'a, P> {
                 }
             }
             std::mem::swap(&mut self.u, &mut self.trial);
-            if iteration % 8 == 7 && known.distance(&self.u, start) > LOST * reach {
+            if (bound.is_some() || iteration % 8 == 7)
+                && known.distance(&self.u, start) > bound.unwrap_or(LOST * reach)
+            {
                 return Err(Failure::Diverged);
             }
         }

@@ -15,6 +15,9 @@ use std::ops::ControlFlow;
 const STATES: usize = 12;
 /// Distances from a near-bifurcation at which its other branch is sought, in gaps.
 const OFFSETS: [f64; 3] = [4.0, 20.0, 1.0];
+/// How far from a near-bifurcation its other branch is sought, in units of the larger of the natural
+/// amplitude and the distance of the known branch.
+const BESIDE: f64 = 4.0;
 /// The shortest and the longest one, in parts of the parameter's range.
 const SPAN: (f64, f64) = (1e-4, 1.0);
 
@@ -232,7 +235,6 @@ fn beside<'a, P: Problem>(
     p: &[f64],
     settings: &DeflationSettings,
 ) -> Result<Deflation<'a, P>, DeflationError> {
-    let settings = DeflationSettings { modes: 0, ..settings.clone() };
     let mut starts: Vec<Vec<f64>> = Vec::new();
     let mut m = vec![0.0; problem.dim()];
     let v = &near.direction.du;
@@ -240,20 +242,37 @@ fn beside<'a, P: Problem>(
     let vv = dot(v, &m);
     let mut opposite = p.to_vec();
     opposite[which] = 2.0 * near.p - p[which];
+    let (mut here, mut there) = (Vec::new(), Vec::new());
     for branch in branches {
-        if check_branch(problem, branch)? != which {
-            continue;
+        if check_branch(problem, branch)? == which {
+            here.extend(passing::states(branch, p[which]));
+            there.extend(passing::states(branch, opposite[which]));
         }
-        for u in passing::states(branch, p[which]) {
-            let from: Vec<f64> = u.iter().zip(&near.u).map(|(a, b)| a - b).collect();
-            let along = if vv > 0.0 { dot(&from, &m) / vv } else { 0.0 };
-            starts.push(u.iter().zip(v).map(|(u, v)| u - 2.0 * along * v).collect());
-            starts.push(u.iter().zip(&from).map(|(u, d)| u - 2.0 * d).collect());
-        }
-        for u in passing::states(branch, opposite[which]) {
-            starts.push(u.iter().zip(&near.u).map(|(u, c)| 2.0 * c - u).collect());
-            starts.push(u);
-        }
+    }
+    // what belongs to other parts of the diagram is far away
+    let mut scratch = vec![0.0; problem.dim()];
+    let mut apart = |u: &Vec<f64>| {
+        let d: Vec<f64> = u.iter().zip(&near.u).map(|(a, b)| a - b).collect();
+        problem.metric(&d, &mut scratch);
+        dot(&d, &scratch).max(0.0).sqrt()
+    };
+    let nearest = here.iter().map(&mut apart).fold(f64::INFINITY, f64::min);
+    let natural = near.direction.amplitude.abs() * vv.max(0.0).sqrt();
+    let size = if nearest.is_finite() { nearest.max(natural) } else { natural };
+    let reach = settings.reach.unwrap_or(BESIDE * size);
+    here.retain(|u| apart(u) <= reach);
+    there.retain(|u| apart(u) <= reach);
+    let reach = (reach > 0.0).then_some(reach);
+    let settings = DeflationSettings { modes: 0, reach, ..settings.clone() };
+    for u in here {
+        let from: Vec<f64> = u.iter().zip(&near.u).map(|(a, b)| a - b).collect();
+        let along = if vv > 0.0 { dot(&from, &m) / vv } else { 0.0 };
+        starts.push(u.iter().zip(v).map(|(u, v)| u - 2.0 * along * v).collect());
+        starts.push(u.iter().zip(&from).map(|(u, d)| u - 2.0 * d).collect());
+    }
+    for u in there {
+        starts.push(near.u.iter().zip(&u).map(|(c, u)| 2.0 * c - u).collect());
+        starts.push(u);
     }
     let part = near.gap.sqrt();
     for x in [part, 4.0 * part, near.gap, 1.0] {

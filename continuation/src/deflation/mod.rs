@@ -318,7 +318,8 @@ impl<'a, P: Problem> Deflation<'a, P> {
             let mut outcome = Err(Failure::Stalled);
             for damping in [Damping::Monotone, Damping::Free] {
                 report.attempts += 1;
-                outcome = solver.attempt(&mut self.known, &start, reach, damping, &limits);
+                let within = (reach, self.settings.reach);
+                outcome = solver.attempt(&mut self.known, &start, within, damping, &limits);
                 if outcome.is_ok() && !self.is_new(&solver.u) {
                     outcome = Err(Failure::Known);
                 }

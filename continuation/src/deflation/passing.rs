@@ -69,7 +69,8 @@ pub(super) fn solutions<P: Problem>(
         }
         if chord > 0.0 && !own.solutions.is_empty() {
             own.length = chord;
-            let tried = solver.attempt(&mut own, &passage.u, chord, Damping::Monotone, &limits);
+            let tried =
+                solver.attempt(&mut own, &passage.u, (chord, None), Damping::Monotone, &limits);
             own.length = extent;
             if tried.is_ok()
                 && passage.covers(&mut own, &solver.u)

@@ -26,6 +26,9 @@ pub struct DeflationSettings {
     /// The length `ℓ` by which distances from known solutions are divided; `None`: from the
     /// distances between known solutions, the branches and the amplitudes at which the Jacobian changes.
     pub length: Option<f64>,
+    /// Solutions farther than this from the start of the attempt are not sought: an attempt that goes
+    /// farther ends. `None`: anywhere.
+    pub reach: Option<f64>,
     /// Number of near-null directions along which each known solution is perturbed.
     pub modes: usize,
     /// The multiples of a direction's natural amplitude, where the Jacobian has changed by as much
@@ -44,6 +47,7 @@ impl Default for DeflationSettings {
             max_iterations: 60,
             separation: 1e-6,
             length: None,
+            reach: None,
             modes: 4,
             amplitudes: vec![1.0, 2.0, 5.0],
             max_solutions: 100,
@@ -72,10 +76,12 @@ impl DeflationSettings {
         if self.separation <= self.tolerance {
             return refuse("separation", self.separation, "above `tolerance`");
         }
-        if let Some(value) = self.length
-            && !(value.is_finite() && value > 0.0)
-        {
-            return refuse("length", value, "finite and positive");
+        for (key, value) in [("length", self.length), ("reach", self.reach)] {
+            if let Some(value) = value
+                && !(value.is_finite() && value > 0.0)
+            {
+                return refuse(key, value, "finite and positive");
+            }
         }
         if let Some(value) = self.amplitudes.iter().find(|a| !(a.is_finite() && **a > 0.0)) {
             return refuse("amplitudes", *value, "finite and positive");

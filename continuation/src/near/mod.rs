@@ -32,6 +32,10 @@ use serde::{Deserialize, Serialize};
 const LEAST_GAP: f64 = 1e-6;
 /// A minimum of the singular value counts if it rises by this factor on both sides.
 const RISE: f64 = 1.1;
+/// Points on either side of a minimum from which the bifurcation is sought besides.
+const BESIDE: usize = 4;
+/// How much larger the singular value may be there.
+const DIP: f64 = 3.0;
 /// Farthest that the branch may pass from the point where the bifurcation would be, in natural
 /// amplitudes.
 const FARTHEST: f64 = 0.7;
@@ -221,10 +225,13 @@ fn dips<P: Problem>(
         if (lo..=(k + 1).min(count - 1)).any(crossed) {
             continue;
         }
-        let Some((_, tangent)) = &values[k] else { continue };
-        let noise = 8.0 * (probe.dim() as f64).sqrt() * noises[k];
-        let z = state(branch, k);
-        let Some((centre, near)) = imperfect(probe, &z, tangent, noise, max_gap) else { continue };
+        // Newton's method may miss it from the lowest point and meet it from one beside
+        let met = around(&sizes, k).into_iter().find_map(|k| {
+            let (_, tangent) = values[k].as_ref()?;
+            let noise = 8.0 * (probe.dim() as f64).sqrt() * noises[k];
+            imperfect(probe, &state(branch, k), tangent, noise, max_gap)
+        });
+        let Some((centre, near)) = met else { continue };
         let again = found.iter().position(|(other, _)| {
             let d = difference(other, &centre);
             probe.norm(&d) < SAME
@@ -257,6 +264,14 @@ fn minima(sizes: &[f64]) -> Vec<usize> {
         rises(&mut sizes[..*k].iter().rev()) && rises(&mut sizes[k + 1..].iter())
     };
     (0..sizes.len()).filter(lowest).collect()
+}
+
+/// The points in the dip about its lowest, that first.
+fn around(sizes: &[f64], lowest: usize) -> Vec<usize> {
+    let within = lowest.saturating_sub(BESIDE)..(lowest + BESIDE + 1).min(sizes.len());
+    let mut points: Vec<usize> = within.filter(|&k| sizes[k] <= DIP * sizes[lowest]).collect();
+    points.sort_by(|a, b| sizes[*a].total_cmp(&sizes[*b]));
+    points
 }
 
 /// The branch point of which the branch at `z` is an unfolding, if it is one.

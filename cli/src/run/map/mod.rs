@@ -8,6 +8,7 @@ mod catalogue;
 mod contact;
 mod curves;
 mod range;
+mod ring_load;
 
 use super::{Observer, RunError};
 use crate::case::{ProblemCase, ResolvedCase};
@@ -109,21 +110,21 @@ pub(crate) fn run_map(
     observer: &mut Observer<'_>,
 ) -> Result<MapResult, MapError> {
     let clock = Instant::now();
-    let not_available = || {
-        let (case, problem) = (case.name.clone(), "ring-load".to_string());
-        MapError::Run(RunError::NotAvailable { case, problem })
-    };
+    let mut usual = None;
     let (value, key) = match &case.problem {
         ProblemCase::Contact(contact) => contact::value(contact, key)?,
         ProblemCase::Catalogue(problem) => catalogue::value(problem, key)?,
-        ProblemCase::RingLoad(_) => return Err(not_available()),
+        ProblemCase::RingLoad(ring) => {
+            usual = (key == ring_load::MOMENT).then_some(ring_load::USUAL_MOMENT * ring.bending);
+            ring_load::value(ring, key)?
+        }
     };
-    let range = range::bounds(&key, value, case.map)?;
+    let range = range::bounds(&key, value, usual, case.map)?;
     let task = Task { case, key, value, range };
     let attempt = |at: f64, observer: &mut Observer<'_>| match &case.problem {
         ProblemCase::Contact(contact) => contact::attempt(&task, contact, at, observer),
         ProblemCase::Catalogue(problem) => catalogue::attempt(&task, problem, at, observer),
-        ProblemCase::RingLoad(_) => Err(not_available()),
+        ProblemCase::RingLoad(ring) => ring_load::attempt(&task, ring, at, observer),
     };
     let mut best = attempt(value, observer)?;
     let (mut at, mut spent) = (value, best.newton_iterations);

@@ -3,14 +3,23 @@
 use super::MapError;
 use crate::case::MapCase;
 
-/// The range: as the case says, else from a tenth to ten times the case's value.
+/// The range: as the case says, else from a tenth to ten times the case's value; about a value of zero
+/// as far as is `usual`.
 ///
 /// # Errors
-/// When it is not given and the value is zero, or when the value lies outside.
-pub(super) fn bounds(key: &str, value: f64, map: MapCase) -> Result<(f64, f64), MapError> {
-    let (near, far) = (0.1 * value, 10.0 * value);
+/// When it is not given and the value is zero without a usual range, or when the value lies outside.
+pub(super) fn bounds(
+    key: &str,
+    value: f64,
+    usual: Option<f64>,
+    map: MapCase,
+) -> Result<(f64, f64), MapError> {
+    let (near, far) = match usual {
+        Some(usual) if value == 0.0 => (-usual, usual),
+        _ => (0.1 * value, 10.0 * value),
+    };
     let (low, high) = (map.from.unwrap_or(near.min(far)), map.to.unwrap_or(near.max(far)));
-    if value == 0.0 && (map.from.is_none() || map.to.is_none()) {
+    if value == 0.0 && usual.is_none() && (map.from.is_none() || map.to.is_none()) {
         return Err(MapError::NoRange { key: key.to_string(), value });
     }
     if !(low < high && (low..=high).contains(&value)) {
@@ -44,14 +53,15 @@ mod tests {
     #[test]
     fn the_default_is_a_tenth_to_ten_times() {
         let map = MapCase::default();
-        assert_eq!(bounds("k", 0.5, map).unwrap(), (0.05, 5.0));
-        assert_eq!(bounds("k", -2.0, map).unwrap(), (-20.0, -0.2));
-        assert!(matches!(bounds("k", 0.0, map), Err(MapError::NoRange { .. })));
+        assert_eq!(bounds("k", 0.5, None, map).unwrap(), (0.05, 5.0));
+        assert_eq!(bounds("k", -2.0, None, map).unwrap(), (-20.0, -0.2));
+        assert!(matches!(bounds("k", 0.0, None, map), Err(MapError::NoRange { .. })));
+        assert_eq!(bounds("k", 0.0, Some(0.5), map).unwrap(), (-0.5, 0.5));
         let given = MapCase { from: Some(-1.0), to: Some(1.0) };
-        assert_eq!(bounds("k", 0.0, given).unwrap(), (-1.0, 1.0));
-        assert!(matches!(bounds("k", 2.0, given), Err(MapError::Outside { .. })));
+        assert_eq!(bounds("k", 0.0, None, given).unwrap(), (-1.0, 1.0));
+        assert!(matches!(bounds("k", 2.0, None, given), Err(MapError::Outside { .. })));
         let half = MapCase { from: Some(1.0), to: None };
-        assert_eq!(bounds("k", 2.0, half).unwrap(), (1.0, 20.0));
+        assert_eq!(bounds("k", 2.0, None, half).unwrap(), (1.0, 20.0));
     }
 
     #[test]

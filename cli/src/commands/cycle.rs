@@ -1,0 +1,60 @@
+//! `arclen cycle`: once to and fro, with the jumps between stable states.
+
+use super::delivery::Made;
+use super::progress::Observer;
+use crate::arguments::CycleArguments;
+use crate::case::ResolvedCase;
+use crate::exit::Exit;
+use crate::output::{CycleResult, Folder, branch_csv, cycle_json, cycle_summary, cycle_table};
+use crate::pictures;
+use crate::run::run_cycle;
+use crate::terminal;
+
+const CYCLE: &str = "cycle.json";
+const PATH: &str = "cycle.csv";
+const BRANCH: &str = "branch.csv";
+const CASE: &str = "case.toml";
+
+/// Travel a case to and fro.
+pub(super) fn cycle(arguments: &CycleArguments) -> Exit {
+    let case =
+        match super::loaded(&arguments.case, &arguments.case.overrides(), arguments.output.quiet) {
+            Ok(loaded) => loaded.case,
+            Err(exit) => return exit,
+        };
+    let names = [CYCLE, PATH, BRANCH, CASE, pictures::LOOP];
+    let folder = match arguments.output.folder(&case.name, &names) {
+        Ok(folder) => folder,
+        Err(exit) => return exit,
+    };
+    let mut observer = Observer::new(Some(case.path), arguments.output.quiet);
+    let outcome = run_cycle(&case, &mut |progress| observer.hear(progress));
+    observer.finish();
+    match outcome {
+        Err(error) => {
+            terminal::error(&error);
+            Exit::BadInput
+        }
+        Ok(result) => deliver(arguments, &case, &result, folder.as_ref()),
+    }
+}
+
+/// Write files, JSON and summary.
+fn deliver(
+    arguments: &CycleArguments,
+    case: &ResolvedCase,
+    result: &CycleResult,
+    folder: Option<&Folder>,
+) -> Exit {
+    let mut made = Made::json(CYCLE, cycle_json(result));
+    if folder.is_some() {
+        made.file(CASE, case.to_toml());
+        made.attempt(PATH, branch_csv(&cycle_table(result)));
+        made.attempt(BRANCH, branch_csv(&result.branch));
+        if !arguments.output.no_pictures {
+            made.files(pictures::draw_cycle(&result.pictures));
+        }
+    }
+    let complete = result.stopped_because.is_complete();
+    arguments.output.deliver(folder, made, |written| cycle_summary(result, written), complete)
+}

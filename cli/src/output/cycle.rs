@@ -1,0 +1,308 @@
+//! `cycle.json` and `cycle.csv`: the path travelled, its jumps and what they dissipate; and the same
+//! for people.
+
+use super::events::maxwell_of;
+use super::number::rounded;
+use super::result::{Cell, MaxwellRecord, Table};
+use super::summary::{aligned, count};
+use crate::case::DeviceCase;
+use crate::pictures::CyclePictures;
+use continuation::StopReason;
+use serde::Serialize;
+use serde_json::json;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Everything a cycle hands over.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CycleResult {
+    /// Name of the case.
+    pub(crate) case: String,
+    /// The device.
+    pub(crate) device: DeviceCase,
+    /// Name of its parameter.
+    pub(crate) parameter: &'static str,
+    /// Where the parameter starts, and where it turns.
+    pub(crate) path: (f64, f64),
+    /// The path.
+    pub(crate) points: Vec<PathRow>,
+    /// The complete branch.
+    pub(crate) branch: Table,
+    /// The jumps, in order.
+    pub(crate) jumps: Vec<JumpRecord>,
+    /// Plate distance and force of the most attractive force on the way out.
+    pub(crate) pull_off: Option<(f64, f64)>,
+    /// Energy dissipated by all jumps.
+    pub(crate) dissipated: Option<f64>,
+    /// Work done on the whole loop.
+    pub(crate) loop_area: Option<f64>,
+    /// Estimated error of the work.
+    pub(crate) area_error: Option<f64>,
+    /// Work done on the way in and out.
+    pub(crate) work: Option<(f64, f64)>,
+    /// Whether the path came back to its first state.
+    pub(crate) closed: bool,
+    /// The folds of the complete branch.
+    pub(crate) folds: Vec<FoldRecord>,
+    /// Its unstable stretches.
+    pub(crate) unstable: Vec<StretchRecord>,
+    /// Its Maxwell points.
+    pub(crate) maxwell: Vec<MaxwellRecord>,
+    /// Why the work ended.
+    pub(crate) stopped_because: StopReason,
+    /// The same in a sentence; may be empty.
+    pub(crate) stopped_detail: String,
+    /// Jacobian assemblies.
+    pub(crate) newton_iterations: usize,
+    /// From the resolved case to the last point.
+    pub(crate) seconds: f64,
+    /// What the pictures show.
+    pub(crate) pictures: CyclePictures,
+}
+
+/// A state on the path.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PathRow {
+    /// `approach` or `retract`.
+    pub(crate) direction: &'static str,
+    /// Number of the state, from zero.
+    pub(crate) step: usize,
+    /// Plate distance.
+    pub(crate) z0: f64,
+    /// Force.
+    pub(crate) force: f64,
+    /// Energy of the whole shell.
+    pub(crate) energy_total: f64,
+    /// The device's parameter.
+    pub(crate) parameter: f64,
+    /// Kind of special point; `jump` for the state after one.
+    pub(crate) event: String,
+}
+
+/// A jump; `None` is a plate that is far away.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct JumpRecord {
+    /// `approach` or `retract`.
+    pub(crate) direction: &'static str,
+    /// The device's parameter.
+    pub(crate) parameter: f64,
+    /// Plate distance before.
+    pub(crate) z0_before: Option<f64>,
+    /// And after.
+    pub(crate) z0_after: Option<f64>,
+    /// Force before.
+    pub(crate) force_before: Option<f64>,
+    /// And after.
+    pub(crate) force_after: Option<f64>,
+    /// Energy of the whole shell before.
+    pub(crate) energy_before: Option<f64>,
+    /// And after.
+    pub(crate) energy_after: Option<f64>,
+    /// Energy dissipated.
+    pub(crate) dissipated: Option<f64>,
+    /// Steps of the motion.
+    pub(crate) steps: usize,
+}
+
+/// A fold of the complete branch.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct FoldRecord {
+    /// The device's parameter.
+    pub(crate) parameter: f64,
+    /// Plate distance.
+    pub(crate) z0: f64,
+    /// Force.
+    pub(crate) force: f64,
+    /// Unstable modes before.
+    pub(crate) unstable_before: Option<usize>,
+    /// And after.
+    pub(crate) unstable_after: Option<usize>,
+    /// Estimated error of the location.
+    pub(crate) error_estimate: f64,
+}
+
+/// An unstable stretch of the complete branch.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct StretchRecord {
+    /// Unstable modes.
+    pub(crate) modes: usize,
+    /// Number of points.
+    pub(crate) points: usize,
+    /// Plate distances of the first and last one.
+    pub(crate) z0: (f64, f64),
+    /// Forces there.
+    pub(crate) force: (f64, f64),
+}
+
+impl CycleResult {
+    /// Difference of loop area and dissipated energy, relative to the larger; without jumps, the loop
+    /// area relative to the work on one way.
+    fn imbalance(&self) -> Option<f64> {
+        let (area, dissipated) = (self.loop_area?, self.dissipated?);
+        let scale = match self.jumps.is_empty() {
+            true => self.work.map_or(0.0, |(a, b)| a.abs().max(b.abs())),
+            false => area.abs().max(dissipated.abs()),
+        };
+        (scale > 0.0).then(|| (area - dissipated).abs() / scale)
+    }
+}
+
+/// The JSON, indented, with a newline at the end.
+///
+/// # Errors
+/// What the writer reports; memory does not fail, so none is expected.
+pub(crate) fn cycle_json(result: &CycleResult) -> Result<String, serde_json::Error> {
+    let pull_off = result.pull_off.map(|(z0, force)| json!({ "z0": z0, "force": force }));
+    let work = result.work.map(|(a, b)| json!({ "approach": a, "retract": b }));
+    let document = Document {
+        case: &result.case,
+        device: result.device.name(),
+        stiffness: result.device.stiffness(),
+        parameter: result.parameter,
+        start: result.path.0,
+        end: result.path.1,
+        jumps: &result.jumps,
+        pull_off,
+        dissipated_total: result.dissipated,
+        loop_area: result.loop_area,
+        loop_area_error: result.area_error,
+        imbalance: result.imbalance(),
+        work,
+        closed: result.closed,
+        folds: &result.folds,
+        unstable: &result.unstable,
+        maxwell: maxwell_of(&result.maxwell),
+        stopped_because: result.stopped_because.to_string(),
+        stopped_detail: &result.stopped_detail,
+        points: result.points.len(),
+        branch_points: result.branch.rows().len(),
+        newton_iterations: result.newton_iterations,
+        seconds: result.seconds,
+    };
+    let mut text = serde_json::to_string_pretty(&document)?;
+    text.push('\n');
+    Ok(text)
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    case: &'a str,
+    device: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stiffness: Option<f64>,
+    parameter: &'a str,
+    start: f64,
+    end: f64,
+    jumps: &'a [JumpRecord],
+    pull_off: Option<serde_json::Value>,
+    dissipated_total: Option<f64>,
+    loop_area: Option<f64>,
+    loop_area_error: Option<f64>,
+    imbalance: Option<f64>,
+    work: Option<serde_json::Value>,
+    closed: bool,
+    folds: &'a [FoldRecord],
+    unstable: &'a [StretchRecord],
+    maxwell: Vec<super::events::MaxwellOf<'a>>,
+    stopped_because: String,
+    stopped_detail: &'a str,
+    points: usize,
+    branch_points: usize,
+    newton_iterations: usize,
+    seconds: f64,
+}
+
+/// The path as a table.
+pub(crate) fn cycle_table(result: &CycleResult) -> Table {
+    let mut columns = vec!["direction", "step", "z0", "force", "energy_total"];
+    if result.parameter == "base" {
+        columns.push(result.parameter);
+    }
+    columns.push("event");
+    let mut table = Table::with_columns(&columns);
+    for row in &result.points {
+        let mut cells: Vec<Cell> = vec![
+            row.direction.into(),
+            row.step.into(),
+            row.z0.into(),
+            row.force.into(),
+            row.energy_total.into(),
+        ];
+        if result.parameter == "base" {
+            cells.push(row.parameter.into());
+        }
+        cells.push(row.event.as_str().into());
+        table.push(cells);
+    }
+    table
+}
+
+/// The summary; `folder` is where the files went, if they went anywhere.
+pub(crate) fn cycle_summary(result: &CycleResult, folder: Option<&Path>) -> String {
+    let mut out = String::new();
+    let name = result.parameter;
+    let number = |value: Option<f64>| value.map_or_else(|| "–".to_string(), rounded);
+    if result.jumps.is_empty() {
+        out.push_str("no jumps: the way out is the way in, and nothing is dissipated\n");
+    } else {
+        let titles =
+            ["jump", name, "z0 before", "z0 after", "force before", "force after", "dissipated"];
+        let mut rows = vec![titles.map(str::to_string).to_vec()];
+        for jump in &result.jumps {
+            rows.push(vec![
+                jump.direction.to_string(),
+                rounded(jump.parameter),
+                number(jump.z0_before),
+                number(jump.z0_after),
+                number(jump.force_before),
+                number(jump.force_after),
+                number(jump.dissipated),
+            ]);
+        }
+        out.push_str(&aligned(&rows));
+    }
+    out.push('\n');
+    if let Some((z0, force)) = result.pull_off {
+        let _ = writeln!(out, "pull-off: force {} at z0 = {}", rounded(force), rounded(z0));
+    }
+    if let (Some(dissipated), Some(area)) = (result.dissipated, result.loop_area)
+        && let Some(imbalance) = result.imbalance()
+        && !result.jumps.is_empty()
+    {
+        let _ = writeln!(
+            out,
+            "dissipated {}, area of the loop {} (they differ by {imbalance:.0e})",
+            rounded(dissipated),
+            rounded(area)
+        );
+    } else if let Some(dissipated) = result.dissipated.filter(|_| !result.jumps.is_empty()) {
+        let _ = writeln!(out, "dissipated {}; the loop is not closed", rounded(dissipated));
+    }
+    if let Some((approach, retract)) = result.work {
+        let (a, b) = (rounded(approach), rounded(retract));
+        let _ = writeln!(out, "work of the plates: approach {a}, retract {b}");
+    }
+    for point in result.maxwell.iter().filter(|point| point.unstable == [Some(0); 2]) {
+        let [a, b] = if name == "force" { point.z0 } else { point.force }.map(rounded);
+        let other = if name == "force" { "z0" } else { "force" };
+        let at = rounded(point.value);
+        let _ =
+            writeln!(out, "equal energies (Maxwell point) at {name} = {at}: {other} {a} and {b}");
+    }
+    let _ = write!(out, "{}: stopped at {}", result.case, result.stopped_because);
+    if !result.stopped_detail.is_empty() {
+        let _ = write!(out, " ({})", result.stopped_detail);
+    }
+    let _ = writeln!(
+        out,
+        "; {}, {} points, {} Newton iterations, {:.2} s",
+        count(result.jumps.len(), "jump", "jumps"),
+        result.points.len(),
+        result.newton_iterations,
+        result.seconds
+    );
+    if let Some(folder) = folder {
+        let _ = writeln!(out, "written to {}", folder.display());
+    }
+    out
+}

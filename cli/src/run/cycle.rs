@@ -1,0 +1,253 @@
+//! A cycle: the complete branch, the path once to and fro, and what it dissipates.
+
+use super::contact::{SAMPLES, device, follow, loaded_path, not_held, path, result, row, shell};
+use super::{Observer, RunError, listen};
+use crate::case::{ProblemCase, ResolvedCase};
+use crate::output::{CycleResult, FoldRecord, JumpRecord, PathRow, StretchRecord};
+use crate::pictures::{Curve, CyclePictures, Mark, Shape};
+use continuation::{EventKind, Problem, Settings};
+use shell_contact::device::{
+    Cycle, CyclePoint, CycleSettings, Direction, Loading, RelaxationSettings, balance, free_start,
+    travel,
+};
+use shell_contact::{ContactBranch, ContactProblem, Device, LoadedProblem};
+use std::time::Instant;
+
+/// Travel a case to and fro.
+///
+/// # Errors
+/// When there is no result at all; a cycle that ends early is a result.
+pub(crate) fn run_cycle(
+    case: &ResolvedCase,
+    observer: &mut Observer<'_>,
+) -> Result<CycleResult, RunError> {
+    let name = case.name.clone();
+    let contact = match &case.problem {
+        ProblemCase::Contact(contact) => contact,
+        ProblemCase::RingLoad(_) => {
+            return Err(RunError::NoPlates { case: name, problem: "ring-load".to_owned() });
+        }
+        ProblemCase::Catalogue(problem) => {
+            return Err(RunError::NoPlates { case: name, problem: problem.name.clone() });
+        }
+    };
+    let clock = Instant::now();
+    let problem = shell(case, contact)?;
+    let device = device(contact);
+    let (traced, maxwell) = follow(case, device, &problem, observer)?;
+    let first = &traced.branch.points[0];
+    let cycle = if device == Device::Grip {
+        let x = match first.unstable {
+            Some(0) => first.u.clone(),
+            _ => free_start(&problem, case.path.start).map_err(|e| not_held(case, e))?,
+        };
+        go(case, &problem, &x, path(case), observer)
+    } else {
+        let loaded = LoadedProblem::new(&problem, device).map_err(|e| not_held(case, e.into()))?;
+        go(case, &loaded, &first.u, loaded_path(case), observer)
+    }?;
+    // a path whose states are all admissible has its work
+    let balance = balance(&problem, &cycle).ok();
+    let seconds = clock.elapsed().as_secs_f64();
+    let branch = &traced.branch;
+    let path_rows: Vec<PathRow> = cycle.points.iter().enumerate().map(path_row).collect();
+    let pull_off = cycle.pull_off().map(|point| (point.z0, point.force));
+    let (mut stopped, mut detail) = (cycle.stopped.reason, cycle.stopped.detail.clone());
+    if stopped.is_complete() && !branch.stopped.reason.is_complete() {
+        stopped = branch.stopped.reason;
+        detail = format!("the complete branch is not: {}", branch.stopped.detail);
+    }
+    Ok(CycleResult {
+        case: name,
+        device: contact.device,
+        parameter: device.parameter_name(),
+        path: (case.path.start, case.path.end),
+        jumps: cycle.jumps.iter().map(|jump| jump_record(&cycle, jump)).collect(),
+        pull_off,
+        dissipated: cycle.dissipated(),
+        loop_area: balance.and_then(|b| b.loop_area),
+        area_error: balance.map(|b| b.error_estimate),
+        work: balance.map(|b| (b.approach, b.retract)),
+        closed: cycle.closed,
+        folds: folds(&traced),
+        unstable: unstable(&traced),
+        maxwell,
+        stopped_because: stopped,
+        stopped_detail: detail,
+        newton_iterations: cycle.newton_iterations + branch.statistics.newton_iterations,
+        seconds,
+        pictures: pictures(&case.name, &problem, &traced, &cycle),
+        branch: result(case, &traced, 0.0).table,
+        points: path_rows,
+    })
+}
+
+fn go<P: Loading>(
+    case: &ResolvedCase,
+    problem: &P,
+    x: &[f64],
+    trace: Settings,
+    observer: &mut Observer<'_>,
+) -> Result<Cycle, RunError> {
+    let (start, end) = (case.path.start, case.path.end);
+    let settings = CycleSettings { start, end, trace, relaxation: RelaxationSettings::default() };
+    travel(problem, x, &settings, &mut listen(observer)).map_err(|detail| RunError::Cycle {
+        case: case.name.clone(),
+        start,
+        detail,
+    })
+}
+
+/// The word for a direction.
+fn word(direction: Direction) -> &'static str {
+    match direction {
+        Direction::Approach => "approach",
+        Direction::Retract => "retract",
+    }
+}
+
+fn path_row((step, point): (usize, &CyclePoint)) -> PathRow {
+    PathRow {
+        direction: word(point.direction),
+        step,
+        z0: point.z0,
+        force: point.force,
+        energy_total: point.energy,
+        parameter: point.parameter,
+        event: point.event.clone().unwrap_or_default(),
+    }
+}
+
+fn jump_record(cycle: &Cycle, jump: &shell_contact::device::Jump) -> JumpRecord {
+    let (before, after) = ends(cycle, jump);
+    JumpRecord {
+        direction: word(jump.direction),
+        parameter: jump.parameter,
+        z0_before: before.map(|p| p.z0),
+        z0_after: after.map(|p| p.z0),
+        force_before: before.map(|p| p.force),
+        force_after: after.map(|p| p.force),
+        energy_before: before.map(|p| p.energy),
+        energy_after: after.map(|p| p.energy),
+        dissipated: jump.dissipated,
+        steps: jump.steps,
+    }
+}
+
+/// The states before and after a jump.
+fn ends<'c>(
+    cycle: &'c Cycle,
+    jump: &shell_contact::device::Jump,
+) -> (Option<&'c CyclePoint>, Option<&'c CyclePoint>) {
+    let at = |index: Option<usize>| index.and_then(|k| cycle.points.get(k));
+    (at(jump.before), at(jump.after))
+}
+
+/// Where the device's parameter turns back on the complete branch.
+fn folds(traced: &ContactBranch) -> Vec<FoldRecord> {
+    let branch = &traced.branch;
+    let fold = |event: &continuation::Event| {
+        let at = row(traced, event.point, &branch.points[event.point]);
+        FoldRecord {
+            parameter: event.p,
+            z0: at.z0,
+            force: at.force,
+            unstable_before: event.unstable_before,
+            unstable_after: event.unstable_after,
+            error_estimate: event.error_estimate,
+        }
+    };
+    branch.events_of(&EventKind::Fold).map(fold).collect()
+}
+
+/// The stretches of the complete branch that are unstable under the device.
+fn unstable(traced: &ContactBranch) -> Vec<StretchRecord> {
+    let branch = &traced.branch;
+    let mut stretches: Vec<StretchRecord> = Vec::new();
+    let mut last = None;
+    for (index, point) in branch.points.iter().enumerate() {
+        let modes = point.unstable.filter(|modes| *modes > 0);
+        if let Some(modes) = modes {
+            let at = row(traced, index, point);
+            match stretches.last_mut() {
+                Some(stretch) if last == Some(modes) => {
+                    stretch.points += 1;
+                    (stretch.z0.1, stretch.force.1) = (at.z0, at.force);
+                }
+                _ => stretches.push(StretchRecord {
+                    modes,
+                    points: 1,
+                    z0: (at.z0, at.z0),
+                    force: (at.force, at.force),
+                }),
+            }
+        }
+        last = modes;
+    }
+    stretches
+}
+
+fn pictures(
+    title: &str,
+    problem: &ContactProblem,
+    traced: &ContactBranch,
+    cycle: &Cycle,
+) -> CyclePictures {
+    let branch = &traced.branch;
+    let mut complete = Curve { label: "complete branch".to_owned(), ..Curve::default() };
+    for (index, point) in branch.points.iter().enumerate() {
+        let at = row(traced, index, point);
+        complete.x.push(at.z0);
+        complete.y.push(at.force);
+        complete.unstable.push(point.unstable.is_some_and(|n| n > 0));
+    }
+    for event in branch.events_of(&EventKind::Fold) {
+        let (x, y) = (complete.x[event.point], complete.y[event.point]);
+        complete.marks.push(Mark { kind: "fold".to_owned(), x, y });
+    }
+    let way = |direction: Direction| {
+        let mut curve = Curve { label: word(direction).to_owned(), ..Curve::default() };
+        for (k, point) in cycle.points.iter().enumerate() {
+            if cycle.jumps.iter().any(|jump| jump.after == Some(k)) {
+                // jumps are arrows, not lines
+                curve.x.push(f64::NAN);
+                curve.y.push(f64::NAN);
+            }
+            if point.direction == direction {
+                curve.x.push(point.z0);
+                curve.y.push(point.force);
+            }
+        }
+        curve
+    };
+    let mut pictures = CyclePictures {
+        title: title.to_owned(),
+        complete,
+        approach: way(Direction::Approach),
+        retract: way(Direction::Retract),
+        jumps: Vec::new(),
+        shapes: Vec::new(),
+    };
+    for (number, jump) in cycle.jumps.iter().enumerate() {
+        let (before, after) = ends(cycle, jump);
+        if let (Some(a), Some(b)) = (before, after) {
+            pictures.jumps.push(((a.z0, a.force), (b.z0, b.force)));
+        }
+        let of = |point: Option<&CyclePoint>, when: &str| {
+            let point = point?;
+            let parameters = problem.parameters_at(point.z0);
+            let profile = problem.profile(&point.u[..problem.dim()], &parameters, SAMPLES).ok()?;
+            Some(Shape {
+                label: format!("{when}: z₀/R₀ = {:.3}", point.z0),
+                sigma: profile.sigma,
+                z: profile.z,
+                plate: point.z0,
+                unstable: false,
+            })
+        };
+        let pair = [of(before, "before"), of(after, "after")];
+        let label = format!("{title}, jump {}: {}", number + 1, word(jump.direction));
+        pictures.shapes.push((label, pair.into_iter().flatten().collect()));
+    }
+    pictures
+}

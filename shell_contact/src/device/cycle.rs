@@ -1,0 +1,458 @@
+//! Once to and fro in a device's parameter: the stable state is followed, and where it ends the
+//! dissipative motion leads to another.
+
+use super::flow::{Motion, MotionError, Relaxation, RelaxationSettings};
+use super::start::{device_settings, device_watches};
+use super::walker::dot;
+use super::{Device, Loading};
+use continuation::{
+    EvalError, Event, Point, Progress, Settings, Stop, StopReason, TraceError, Tracer,
+};
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+
+/// Which way the plates go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Direction {
+    /// Towards each other.
+    Approach,
+    /// Away from each other.
+    Retract,
+}
+
+/// What is travelled, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CycleSettings {
+    /// Where the device's parameter starts and ends.
+    pub start: f64,
+    /// Where it turns back.
+    pub end: f64,
+    /// How branches are followed; `max_points` is that of the whole cycle, the target is ignored.
+    pub trace: Settings,
+    /// How jumps are followed.
+    pub relaxation: RelaxationSettings,
+}
+
+/// A state on the path travelled.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CyclePoint {
+    /// Which way the plates go.
+    pub direction: Direction,
+    /// The device's parameter.
+    pub parameter: f64,
+    /// The plate's height, in `R0`.
+    pub z0: f64,
+    /// Force on one plate, in `√(χk_b)`.
+    pub force: f64,
+    /// Total energy of the whole shell, in `χR0²`.
+    pub energy: f64,
+    /// The same with the potential of both devices.
+    pub potential: f64,
+    /// The shell.
+    pub u: Vec<f64>,
+    /// Kind of the special point that it is, `jump` for the state that a jump led to.
+    pub event: Option<String>,
+}
+
+/// A dissipative motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Jump {
+    /// Which way the plates go.
+    pub direction: Direction,
+    /// The device's parameter, which does not change.
+    pub parameter: f64,
+    /// Index of the last point before, in [`Cycle::points`]; `None` if the plate comes back from far
+    /// away.
+    pub before: Option<usize>,
+    /// Index of the first point after; `None` if the plate flies away.
+    pub after: Option<usize>,
+    /// Energy dissipated, in `χR0²` for the whole shell and both devices; `None` without bound, and for
+    /// a plate that comes from far away.
+    pub dissipated: Option<f64>,
+    /// Steps of the motion.
+    pub steps: usize,
+}
+
+/// A path once to and fro.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cycle {
+    /// The device.
+    pub device: Device,
+    /// The states, in the order in which they were passed.
+    pub points: Vec<CyclePoint>,
+    /// The jumps between them, in order.
+    pub jumps: Vec<Jump>,
+    /// Whether the last state is the first one, and the plate has not been far away in between.
+    pub closed: bool,
+    /// Why it ended: `ClosedLoop`; `Target` if it came back to another state; `Domain` if the plate
+    /// flew away; else it is not complete.
+    pub stopped: Stop,
+    /// Jacobian assemblies, those of jumps included.
+    pub newton_iterations: usize,
+}
+
+/// Why there is no cycle at all. One that ends early is a result.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CycleError {
+    /// Not even the first point could be computed.
+    #[error(transparent)]
+    Start(#[from] TraceError),
+    /// The first state is unstable.
+    #[error("the state at the start has {modes} unstable modes")]
+    Unstable {
+        /// How many.
+        modes: usize,
+    },
+}
+
+/// Event of a state that a jump led to.
+pub const JUMP: &str = "jump";
+
+/// Where a plate is that has flown away, in `R0`.
+const FAR: f64 = 5.0;
+
+/// States nearer than this, in `R0`, are the same.
+const SAME: f64 = 1e-8;
+
+/// Travels from `x`, a stable state near the start, to the end and back. The observer hears of every
+/// point and may stop the cycle.
+///
+/// # Errors
+/// When there is no first point, or it is unstable.
+pub fn travel<P: Loading>(
+    problem: &P,
+    x: &[f64],
+    settings: &CycleSettings,
+    observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<Cycle, CycleError> {
+    let mut traveller = Traveller {
+        problem,
+        settings,
+        relaxation: Relaxation::new(problem, settings.relaxation),
+        cycle: Cycle {
+            device: problem.device(),
+            points: Vec::new(),
+            jumps: Vec::new(),
+            closed: false,
+            stopped: Stop { reason: StopReason::Target, detail: String::new() },
+            newton_iterations: 0,
+        },
+        x: x.to_vec(),
+        parameter: settings.start,
+        first: None,
+        away: false,
+    };
+    let stopped = match traveller.legs(observer) {
+        Ok(()) => traveller.end(),
+        Err(End::Stop(stop)) => stop,
+        Err(End::Error(error)) => return Err(error),
+    };
+    traveller.cycle.stopped = stopped;
+    Ok(traveller.cycle)
+}
+
+struct Traveller<'p, P: Loading> {
+    problem: &'p P,
+    settings: &'p CycleSettings,
+    relaxation: Relaxation<P>,
+    cycle: Cycle,
+    x: Vec<f64>,
+    parameter: f64,
+    first: Option<Vec<f64>>,
+    /// Whether the plate has flown away.
+    away: bool,
+}
+
+/// Why the cycle ends before it has come back.
+enum End {
+    Stop(Stop),
+    Error(CycleError),
+}
+
+impl End {
+    fn stop(reason: StopReason, detail: String) -> Self {
+        End::Stop(Stop { reason, detail })
+    }
+}
+
+/// How a stretch without jumps ends.
+enum Stretch {
+    Target,
+    Lost,
+}
+
+impl<P: Loading> Traveller<'_, P> {
+    fn legs(&mut self, observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Result<(), End> {
+        let CycleSettings { start, end, .. } = *self.settings;
+        for (from, to) in [(start, end), (end, start)] {
+            let upwards = to > from;
+            let direction = if upwards == self.problem.device().approaches_upwards() {
+                Direction::Approach
+            } else {
+                Direction::Retract
+            };
+            if self.away && !self.comes_back(direction, to)? {
+                continue;
+            }
+            while self.parameter != to {
+                match self.stretch(direction, to, observer)? {
+                    Stretch::Target => break,
+                    Stretch::Lost => self.jump(direction)?,
+                }
+                if self.away {
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A plate far away that is no longer pulled comes back: the attraction of the film alone brings it.
+    /// False if the load pulls all the way.
+    fn comes_back(&mut self, direction: Direction, to: f64) -> Result<bool, End> {
+        let problem = self.problem;
+        if to <= 0.0 {
+            return Ok(false);
+        }
+        self.parameter = 0.0;
+        let p = problem.contact().parameters_at(self.parameter);
+        let free = super::start::free_start(problem.contact(), FAR);
+        let Ok(free) = free else { return Ok(false) };
+        let from: Vec<f64> = free.into_iter().chain([FAR]).collect();
+        let motion = self.relaxation.from_state(problem, &from, &p);
+        self.cycle.newton_iterations += self.relaxation.assemblies();
+        if let Err(error) = motion {
+            return Err(self.refused(&error));
+        }
+        self.x.copy_from_slice(self.relaxation.state());
+        let landed = self.landing(direction).map_err(|e| self.refused(&MotionError::Start(e)))?;
+        self.cycle.jumps.push(Jump {
+            direction,
+            parameter: self.parameter,
+            before: None,
+            after: Some(self.cycle.points.len()),
+            dissipated: None,
+            steps: self.relaxation.steps(),
+        });
+        self.cycle.points.push(landed);
+        self.away = false;
+        Ok(true)
+    }
+
+    /// Follows the stable state until it is lost or the parameter is at `target`.
+    fn stretch(
+        &mut self,
+        direction: Direction,
+        target: f64,
+        observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<Stretch, End> {
+        let problem = self.problem;
+        let limit = self.settings.trace.max_points;
+        let left = limit.saturating_sub(self.cycle.points.len());
+        if left < 2 {
+            return Err(End::stop(
+                StopReason::MaxPoints,
+                format!("the limit of {limit} points was reached"),
+            ));
+        }
+        let trace = Settings {
+            target: Some(target),
+            domain: None,
+            increasing: None,
+            max_points: left,
+            ..self.settings.trace.clone()
+        };
+        let trace = device_settings(problem.device(), trace);
+        let name = problem.device().parameter_name();
+        let p = problem.contact().parameters_at(self.parameter);
+        let tracer = Tracer::new(problem, name, &self.x, &p, trace)
+            .and_then(|tracer| tracer.watching(&device_watches(problem.device())));
+        let mut tracer = match tracer {
+            Ok(tracer) => tracer,
+            Err(error) if self.cycle.points.is_empty() => return Err(End::Error(error.into())),
+            Err(error) => {
+                let at = self.parameter;
+                let detail = format!("at {name} = {at:.10} the path does not go on: {error}");
+                return Err(End::stop(StopReason::StepTooSmall, detail));
+            }
+        };
+        let mut outcome = None;
+        let mut fresh = self.cycle.points.is_empty();
+        while let Some(point) = tracer.next() {
+            let event = point.event.map(|e| tracer.events()[e].clone());
+            if self.first.is_none() {
+                if let Some(modes) = point.unstable.filter(|modes| *modes > 0) {
+                    return Err(End::Error(CycleError::Unstable { modes }));
+                }
+                self.first = Some(point.u.clone());
+            }
+            // the first point of a later stretch is the last one of an earlier
+            if fresh {
+                self.record(direction, &point, event.as_ref());
+            }
+            fresh = true;
+            self.x.copy_from_slice(&point.u);
+            self.parameter = point.p;
+            let progress = Progress {
+                points: self.cycle.points.len(),
+                events: self.cycle.jumps.len(),
+                p: point.p,
+                s: point.s,
+            };
+            if observer(&progress).is_break() {
+                let detail = "interrupted".to_owned();
+                outcome = Some(Err(End::stop(StopReason::Interrupted, detail)));
+                break;
+            }
+            let lost = event.as_ref().and_then(|e| e.unstable_after).is_some_and(|n| n > 0);
+            if lost {
+                outcome = Some(Ok(Stretch::Lost));
+                break;
+            }
+            if point.unstable.is_some_and(|n| n > 0) {
+                let detail = format!(
+                    "at {name} = {:.10} the state is unstable, but the special point before it \
+                     was not found",
+                    point.p
+                );
+                outcome = Some(Err(End::stop(StopReason::StepTooSmall, detail)));
+                break;
+            }
+        }
+        self.cycle.newton_iterations += tracer.statistics().newton_iterations;
+        if let Some(outcome) = outcome {
+            return outcome;
+        }
+        match tracer.stopped() {
+            Some(stop) if stop.reason == StopReason::Target => Ok(Stretch::Target),
+            Some(stop) if stop.reason == StopReason::MaxPoints => {
+                Err(End::stop(stop.reason, format!("the limit of {limit} points was reached")))
+            }
+            Some(stop) => Err(End::Stop(stop.clone())),
+            None => Err(End::stop(StopReason::Interrupted, String::new())),
+        }
+    }
+
+    /// Follows the dissipative motion from the state that was lost.
+    fn jump(&mut self, direction: Direction) -> Result<(), End> {
+        let problem = self.problem;
+        let p = problem.contact().parameters_at(self.parameter);
+        let motion = self.relaxation.from_fold(problem, &self.x, &p);
+        self.cycle.newton_iterations += self.relaxation.assemblies();
+        let before = self.cycle.points.len().saturating_sub(1);
+        let mut jump = Jump {
+            direction,
+            parameter: self.parameter,
+            before: Some(before),
+            after: None,
+            dissipated: None,
+            steps: self.relaxation.steps(),
+        };
+        match motion {
+            Ok(Motion::Rest) => {
+                self.x.copy_from_slice(self.relaxation.state());
+                let landed =
+                    self.landing(direction).map_err(|e| self.refused(&MotionError::Start(e)))?;
+                jump.after = Some(self.cycle.points.len());
+                jump.dissipated = Some(self.cycle.points[before].potential - landed.potential);
+                self.cycle.points.push(landed);
+                self.cycle.jumps.push(jump);
+                Ok(())
+            }
+            Ok(Motion::Away) => {
+                self.cycle.jumps.push(jump);
+                self.away = true;
+                Ok(())
+            }
+            Err(error) => Err(self.refused(&error)),
+        }
+    }
+
+    fn refused(&self, error: &MotionError) -> End {
+        let name = self.problem.device().parameter_name();
+        let detail = format!("the jump at {name} = {:.10} was lost: {error}", self.parameter);
+        End::stop(StopReason::StepTooSmall, detail)
+    }
+
+    fn landing(&self, direction: Direction) -> Result<CyclePoint, EvalError> {
+        let problem = self.problem;
+        let p = problem.contact().parameters_at(self.parameter);
+        let z0 = problem.plate(&self.x, &p);
+        let u = problem.shell_part(&self.x);
+        let seen = problem.contact().observation(u, &problem.contact().parameters_at(z0))?;
+        Ok(CyclePoint {
+            direction,
+            parameter: self.parameter,
+            z0,
+            force: seen.force,
+            energy: seen.energy_total,
+            potential: problem.potential(&self.x, &p)?,
+            u: u.to_vec(),
+            event: Some(JUMP.to_owned()),
+        })
+    }
+
+    fn record(&mut self, direction: Direction, point: &Point, event: Option<&Event>) {
+        let problem = self.problem;
+        let p = problem.contact().parameters_at(point.p);
+        let named = |name: &str| {
+            let at = problem.observables().iter().position(|n| *n == name);
+            at.map_or(f64::NAN, |k| point.observables[k])
+        };
+        let (z0, energy) = (problem.plate(&point.u, &p), named("energy_total"));
+        let root = problem.contact().groups().bending.sqrt();
+        self.cycle.points.push(CyclePoint {
+            direction,
+            parameter: point.p,
+            z0,
+            force: named("force"),
+            energy,
+            potential: energy + problem.device().potential(root, point.p, z0),
+            u: problem.shell_part(&point.u).to_vec(),
+            event: event.map(|event| event.kind.to_string()),
+        });
+    }
+
+    /// After both ways: whether the path came back to its beginning.
+    fn end(&mut self) -> Stop {
+        let stop = |reason, detail: &str| Stop { reason, detail: detail.to_owned() };
+        if self.away {
+            return stop(StopReason::Domain, "the plate flew away: no state holds the load");
+        }
+        let difference: Vec<f64> = match &self.first {
+            Some(first) => self.x.iter().zip(first).map(|(a, b)| a - b).collect(),
+            None => Vec::new(),
+        };
+        let mut m = vec![0.0; difference.len()];
+        self.problem.metric(&difference, &mut m);
+        let back = dot(&m, &difference).max(0.0).sqrt() < SAME;
+        let bounded = self.cycle.jumps.iter().all(|jump| jump.dissipated.is_some());
+        self.cycle.closed = back && bounded;
+        match (back, bounded) {
+            (true, true) => stop(StopReason::ClosedLoop, ""),
+            (true, false) => stop(StopReason::Target, "the plate flew away and came back"),
+            (false, _) => stop(
+                StopReason::Target,
+                "back at the start, but in another state than at first: the start lies where there \
+                 are several",
+            ),
+        }
+    }
+}
+
+impl Cycle {
+    /// The point of most attractive force on the way back, from the turn on.
+    pub fn pull_off(&self) -> Option<&CyclePoint> {
+        let largest = self.points.iter().fold(0.0_f64, |m, p| m.max(p.force.abs()));
+        let retract = self.points.iter().filter(|p| p.direction == Direction::Retract);
+        // a force of zero is no attraction
+        retract.filter(|p| p.force < -1e-12 * largest).min_by(|a, b| a.force.total_cmp(&b.force))
+    }
+
+    /// Energy dissipated by all jumps; `None` if one of them has no end.
+    pub fn dissipated(&self) -> Option<f64> {
+        self.jumps.iter().try_fold(0.0, |sum, jump| Some(sum + jump.dissipated?))
+    }
+}

@@ -1,0 +1,90 @@
+//! The contact problem as the plate sees it: energy, pull and stiffness.
+
+use super::{Device, Loading};
+use crate::contact::{ContactProblem, parameter, with_law};
+use crate::energy;
+use crate::film::Potential;
+use crate::observables;
+use crate::scalar::{Lanes, Scalar};
+use continuation::linalg::SymmetricBand;
+use continuation::{EvalError, Matrix, ParamId};
+use std::f64::consts::PI;
+
+impl<F: Potential> ContactProblem<F> {
+    /// Total potential energy of the whole shell, in `χR0²`: the `energy_total` that is reported.
+    ///
+    /// # Errors
+    /// When the state is not admissible.
+    pub fn total_energy(&self, u: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+        let (c, gas) = self.coefficients(u, p)?;
+        let (mesh, film) = (&self.mesh, &self.potential);
+        let parts = with_law!(self, |law| energy::parts(mesh, u, &law, film, &c))?;
+        let elastic = parts.stretching + parts.bending + parts.film;
+        Ok(4.0 * PI * (elastic + gas.energy(parts.volume) + c.surface_tension * parts.area))
+    }
+
+    /// `∂E/∂z_p` of the half shell over `2π`; the reported force is `−2π/√k_b` times it.
+    ///
+    /// # Errors
+    /// When the state is not admissible.
+    pub fn plate_pull(&self, u: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+        let (c, _) = self.coefficients(u, p)?;
+        observables::plate_pull(self, u, &c)
+    }
+
+    /// Partial derivative of [`Self::plate_pull`] by a parameter at a fixed shell; by `z0` it is the
+    /// corner of the bordered Hessian.
+    ///
+    /// # Errors
+    /// When the state is not admissible.
+    pub fn plate_pull_by(&self, u: &[f64], p: &[f64], which: ParamId) -> Result<f64, EvalError> {
+        let (c, _) = self.coefficients(u, p)?;
+        let film = &self.potential;
+        energy::integrate(&self.mesh, u, c.plate, |at, x| {
+            let a = (x.s[1] * x.s[1] + x.z[1] * x.z[1]).sqrt();
+            let delta = -(x.z[0] - c.plate);
+            let slope = match which {
+                parameter::Z0 => film.jet(delta, c.adhesion, c.film).d2,
+                parameter::ADHESION => film.by_adhesion(delta, c.adhesion, c.film).1,
+                parameter::FILM => film.by_length(delta, c.adhesion, c.film).1,
+                _ => Lanes::constant(0.0),
+            };
+            slope * x.s[0] * a * at.weight
+        })
+    }
+
+    /// The parameters of this problem with other values of all but the first, and the plate at
+    /// `z0`; NaN for those that are missing, which is refused wherever they are used.
+    pub(crate) fn with_plate(p: &[f64], z0: f64) -> [f64; parameter::COUNT] {
+        let mut all = [f64::NAN; parameter::COUNT];
+        for (to, from) in all.iter_mut().zip(p) {
+            *to = *from;
+        }
+        all[parameter::Z0.0] = z0;
+        all
+    }
+}
+
+impl<F: Potential> Loading for ContactProblem<F> {
+    type Film = F;
+
+    fn device(&self) -> Device {
+        Device::Grip
+    }
+
+    fn contact(&self) -> &ContactProblem<F> {
+        self
+    }
+
+    fn plate(&self, _: &[f64], p: &[f64]) -> f64 {
+        p[parameter::Z0.0]
+    }
+
+    fn potential(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+        self.total_energy(x, p)
+    }
+
+    fn add_drag(&self, a: f64, h: &mut SymmetricBand) {
+        h.axpy(a, self.mesh.mass());
+    }
+}
