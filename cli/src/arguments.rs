@@ -36,6 +36,8 @@ pub(crate) enum Command {
     /// Follow special points in two parameters; write the curves, the special points on them and a
     /// picture
     Map(MapArguments),
+    /// Compute figures of the reference paper, and compare its claims with them
+    Figure(FigureArguments),
     /// Trace many cases, over grids and lists of parameters, on all cores
     Sweep(SweepArguments),
     /// Unite the results of the shards of a sweep
@@ -144,6 +146,23 @@ pub(crate) struct MapArguments {
     /// [default: a tenth to ten times the case's value]
     #[arg(long, value_name = "KEY")]
     pub(crate) over: String,
+    /// What to do with the results.
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
+}
+
+/// Which figures, and what to do with them.
+#[derive(Debug, Args)]
+pub(crate) struct FigureArguments {
+    /// Numbers of figures, or "all"
+    #[arg(value_name = "N|all", required = true)]
+    pub(crate) numbers: Vec<String>,
+    /// Number of elements, as --set mesh.elements=N
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) elements: Option<String>,
+    /// Replace a value in every case of the figures, e.g. --set shell.poisson=0.3; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
     /// What to do with the results.
     #[command(flatten)]
     pub(crate) output: OutputArguments,

@@ -8,6 +8,7 @@ mod case;
 mod closest;
 mod commands;
 mod exit;
+mod figures;
 mod output;
 mod phase;
 mod pictures;

@@ -36,6 +36,7 @@ pub mod energy;
 pub mod film;
 pub mod forward;
 pub mod gas;
+pub mod identify;
 pub mod membrane;
 pub mod meridian;
 pub mod observables;

@@ -5,6 +5,7 @@ mod completions;
 mod cycle;
 mod delivery;
 mod diagram;
+mod figure;
 mod list;
 mod map;
 mod progress;
@@ -22,6 +23,7 @@ pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
     match &arguments.command {
         Command::Trace(arguments) => trace::trace(arguments),
         Command::Diagram(arguments) => diagram::diagram(arguments),
+        Command::Figure(arguments) => figure::figure(arguments),
         Command::Cycle(arguments) => cycle::cycle(arguments),
         Command::Check(arguments) => check::check(arguments),
         Command::Map(arguments) => map::map(arguments),

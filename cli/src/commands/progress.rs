@@ -80,6 +80,18 @@ impl Observer {
         self.wish()
     }
 
+    /// The wish to stop, for work that goes on elsewhere.
+    pub(super) fn stop(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stop)
+    }
+
+    /// Show a message.
+    pub(super) fn say(&self, message: String) {
+        if let Some(bar) = &self.bar {
+            bar.set_message(message);
+        }
+    }
+
     fn wish(&self) -> ControlFlow<()> {
         if self.stop.load(Ordering::SeqCst) {
             ControlFlow::Break(())

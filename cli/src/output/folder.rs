@@ -99,6 +99,9 @@ impl Folder {
         let mut ready = Vec::with_capacity(files.len());
         for (name, bytes) in files {
             let target = self.path.join(name);
+            if let Some(parent) = target.parent() {
+                fs::create_dir_all(parent).map_err(failed(parent))?;
+            }
             let temporary = self.temporary(bytes).map_err(failed(&target))?;
             ready.push((target, temporary));
         }

@@ -11,6 +11,7 @@ mod draw;
 mod map;
 mod palette;
 mod phase;
+mod sheet;
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -21,6 +22,9 @@ pub(crate) use data::Mark;
 pub(crate) use data::{Curve, Profile, Shape};
 pub(crate) use map::{MAP, draw_map};
 pub(crate) use phase::{PHASE, draw_phase};
+pub(crate) use sheet::{
+    BOLD, FAMILY, FONT, Ink, Panel, PanelLine, Pen, PngError, Sheet, escape, png,
+};
 
 use crate::output::{DiagramResult, Pictures};
 

@@ -72,6 +72,19 @@ fn traced(
     Ok(Traced { problem, branch, maxwell, seconds: clock.elapsed().as_secs_f64() })
 }
 
+/// The branch itself under a held plate, and its problem.
+pub(crate) fn branch(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    observer: &mut Observer<'_>,
+) -> Result<(ContactProblem, ContactBranch), RunError> {
+    let problem = shell(case, contact)?;
+    let start = case.path.start;
+    let traced = trace_contact(&problem, start, path(case), &mut listen(observer))
+        .map_err(|detail| no_start(case, detail))?;
+    Ok((problem, traced))
+}
+
 /// The branch in the device's parameter, and its Maxwell points.
 pub(super) fn follow(
     case: &ResolvedCase,
@@ -153,7 +166,7 @@ pub(super) fn no_start(case: &ResolvedCase, detail: TraceError) -> RunError {
 }
 
 /// A traced branch as plain numbers, without pictures.
-pub(super) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) -> TraceResult {
+pub(crate) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) -> TraceResult {
     let (table, events) = tabulate(traced);
     let branch = &traced.branch;
     TraceResult {

@@ -10,6 +10,7 @@ mod map;
 mod ring_load;
 mod sweep;
 
+pub(crate) use contact::{branch as contact_branch, result as contact_result};
 pub(crate) use cycle::run_cycle;
 pub(crate) use map::run_map;
 pub(crate) use sweep::{Outcome, run_sweep};

@@ -3,8 +3,8 @@
 use crate::{contact, trace};
 use continuation::{EventKind, Settings, StopReason, Tracer, Watch};
 use shell_contact::Mesh;
-use shell_contact::asymptotics::contact_curvature;
-use std::f64::consts::{FRAC_PI_2, PI};
+use shell_contact::asymptotics::{contact_curvature, derjaguin_pull_off};
+use std::f64::consts::FRAC_PI_2;
 use std::ops::ControlFlow;
 
 /// Uniform but for short elements about `centre`.
@@ -84,8 +84,8 @@ fn pull_off_of_a_stiff_shell_is_derjaguins() {
         let minimum = EventKind::Minimum("force".to_owned());
         assert_eq!(branch.events_of(&minimum).count(), 1);
         let at = branch.events_of(&minimum).next().unwrap().point;
-        let force = branch.points[at].observables[0] * bending.sqrt();
-        force / (2.0 * PI * adhesion) - rigid
+        let force = branch.points[at].observables[0];
+        -force / derjaguin_pull_off(adhesion, bending) - rigid
     });
     let orders = [0, 1, 2].map(|k| (errors[k] / errors[k + 1]).log2());
     println!("rigid {rigid:.6}, off by {errors:?}, orders {orders:.3?}");

@@ -2,7 +2,7 @@
 
 use crate::{contact, trace, zero_force};
 use continuation::{Branch, EventKind, Matrix, Problem, Watch};
-use shell_contact::asymptotics::{knee_deformation, plate_pogorelov_force};
+use shell_contact::asymptotics::{knee_deformation, knee_force, plate_pogorelov_force};
 use shell_contact::contact::parameter::Z0;
 use shell_contact::{ContactProblem, Mesh};
 
@@ -56,6 +56,9 @@ fn flat_cap_gives_way_at_the_known_knee() {
         );
         assert_eq!(branch.events_of(&EventKind::Fold).count(), folds);
         assert!((knee / known - 1.0).abs() < 0.015, "{knee} {known}");
+        let force = branch.points[after].observables[0] / knee_force(bending);
+        println!("  force {force:.3} of the asymptotic one");
+        assert!((force - 1.0).abs() < 0.08, "{force}");
         assert!((knee * bending.sqrt() / knee_deformation(bending) - 1.0).abs() < 0.015);
     }
 }

@@ -6,6 +6,7 @@ mod adhesion;
 mod buckling;
 mod collocation;
 mod drop;
+mod identify;
 mod indentation;
 mod point_load;
 mod work;

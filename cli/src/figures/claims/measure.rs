@@ -1,0 +1,126 @@
+//! What is measured on a branch.
+
+use crate::figures::curve::{State, Traced};
+use continuation::{EventKind, Point};
+
+/// Samples along the meridian.
+const SAMPLES: usize = 801;
+
+/// Points of the branch in compression: deformation and reduced force, from the zero of the force.
+fn compression(traced: &Traced) -> Vec<(f64, f64)> {
+    let points = &traced.branch.branch.points;
+    (0..points.len())
+        .map(|i| {
+            let d = traced.branch.deformation(points[i].p).unwrap_or(f64::NAN);
+            (d, traced.observable(i, "force"))
+        })
+        .filter(|(d, force)| *d >= 0.0 && *force >= 0.0)
+        .collect()
+}
+
+/// Deformation and force where the slope has fallen to half of the largest one before.
+pub(super) fn knee(traced: &Traced) -> Option<(f64, f64)> {
+    let points = compression(traced);
+    let mut largest = 0.0_f64;
+    for pair in points.windows(2) {
+        let ((d0, f0), (d1, f1)) = (pair[0], pair[1]);
+        let slope = (f1 - f0) / (d1 - d0);
+        largest = largest.max(slope);
+        if slope < 0.5 * largest {
+            return Some((0.5 * (d0 + d1), 0.5 * (f0 + f1)));
+        }
+    }
+    None
+}
+
+/// Least slope after the largest one, over it; `to` bounds the deformation.
+pub(super) fn least_slope(traced: &Traced, to: f64) -> Option<f64> {
+    let points = compression(traced);
+    let (mut largest, mut least) = (0.0_f64, f64::INFINITY);
+    for pair in points.windows(2).filter(|pair| pair[1].0 <= to) {
+        let slope = (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
+        if slope > largest {
+            (largest, least) = (slope, slope);
+        }
+        least = least.min(slope);
+    }
+    (largest > 0.0).then(|| least / largest)
+}
+
+/// Reduced force at a deformation, the first time.
+pub(super) fn force(traced: &Traced, d: f64) -> Option<f64> {
+    Some(traced.state(d, 1)?.observation.force)
+}
+
+/// `F̂/d̂` of the chord between two deformations.
+pub(super) fn slope(traced: &Traced, from: f64, to: f64) -> Option<f64> {
+    Some((force(traced, to)? - force(traced, from)?) / (to - from))
+}
+
+/// Power of the deformation with which the force grows at `d`.
+pub(super) fn power(traced: &Traced, d: f64) -> Option<f64> {
+    let (low, high) = (force(traced, 0.97 * d)?, force(traced, 1.03 * d)?);
+    Some((high / low).ln() / (1.03_f64 / 0.97).ln())
+}
+
+/// Where the slope has become `factor` times the first one.
+pub(super) fn steeper(traced: &Traced, factor: f64) -> Option<f64> {
+    let first = slope(traced, 0.0, 0.01)?;
+    let points = compression(traced);
+    points
+        .windows(2)
+        .find(|pair| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0) > factor * first)
+        .map(|pair| 0.5 * (pair[0].0 + pair[1].0))
+}
+
+/// Number of folds.
+pub(super) fn folds(traced: &Traced) -> Option<f64> {
+    complete(traced).then(|| traced.branch.branch.events_of(&EventKind::Fold).count() as f64)
+}
+
+/// Deformation and force at a fold.
+pub(super) fn fold(traced: &Traced, which: usize) -> Option<(f64, f64)> {
+    let event = traced.branch.branch.events_of(&EventKind::Fold).nth(which)?;
+    Some((traced.branch.deformation(event.p)?, traced.observable(event.point, "force")))
+}
+
+/// The most attractive force.
+pub(super) fn pull_off(traced: &Traced) -> Option<f64> {
+    let kind = EventKind::Named(shell_contact::trace::PULL_OFF.to_owned());
+    let event = traced.branch.branch.events_of(&kind).next()?;
+    Some(traced.observable(event.point, "force"))
+}
+
+/// How far the pole lies below the highest point, in `R0`.
+pub(super) fn dimple(traced: &Traced, d: f64) -> Option<f64> {
+    let state = traced.state(d, 1)?;
+    let profile = traced.profile(&state, SAMPLES)?;
+    let highest = profile.z.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    Some(highest - profile.z.first()?)
+}
+
+/// Disjoining pressure at the pole over the largest one, and where that is.
+pub(super) fn pressure(traced: &Traced, d: f64) -> Option<(f64, f64)> {
+    let state = traced.state(d, 1)?;
+    let profile = traced.profile(&state, SAMPLES)?;
+    let all = &profile.disjoining_pressure;
+    let top = (0..all.len()).max_by(|&i, &j| all[i].total_cmp(&all[j]))?;
+    Some((all.first()? / all[top], profile.sigma[top]))
+}
+
+/// A ratio of parts of the energy.
+pub(super) fn energies(traced: &Traced, d: f64, ratio: fn(&State) -> f64) -> Option<f64> {
+    Some(ratio(&traced.state(d, 1)?))
+}
+
+/// Most unstable modes among the points that are chosen.
+pub(super) fn unstable(traced: &Traced, chosen: impl Fn(usize, &Point) -> bool) -> Option<f64> {
+    let points = &traced.branch.branch.points;
+    let chosen = points.iter().enumerate().filter(|(i, q)| chosen(*i, q));
+    chosen.filter_map(|(_, q)| q.unstable).max().map(|n| n as f64)
+}
+
+/// Whether the branch was traced to its end.
+pub(super) fn complete(traced: &Traced) -> bool {
+    traced.branch.branch.is_complete()
+}
