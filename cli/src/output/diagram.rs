@@ -245,6 +245,7 @@ pub(crate) fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> 
     }
     let mut out = aligned(&rows);
     out.push('\n');
+    out.push_str(&nearly(result));
     let _ = write!(out, "{}: {}", result.case, result.stopped_because);
     if !result.stopped_detail.is_empty() {
         let _ = write!(out, " ({})", result.stopped_detail);
@@ -260,6 +261,26 @@ pub(crate) fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> 
     );
     if let Some(folder) = folder {
         let _ = writeln!(out, "written to {}", folder.display());
+    }
+    out
+}
+
+/// What nearly happens on the branches, a line each; empty where there is nothing.
+fn nearly(result: &DiagramResult) -> String {
+    let mut out = String::new();
+    for (one, near) in result.branches.iter().flat_map(|one| one.near.iter().map(move |n| (one, n)))
+    {
+        let what = match near.kind {
+            "folds" => "two folds that nearly meet",
+            _ => "nearly a branch point, kept apart by an imperfection,",
+        };
+        let at = super::number::rounded(near.parameter);
+        let gap = format!("{:.0e}", near.gap);
+        let _ =
+            writeln!(out, "branch {}: {what} at {} = {at} (gap {gap})", one.id, result.parameter);
+    }
+    if !out.is_empty() {
+        out.push('\n');
     }
     out
 }
