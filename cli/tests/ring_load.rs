@@ -1,4 +1,5 @@
 //! Ring-load cases through the program.
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::path::Path;
 use std::process::{Command, Output};
