@@ -101,6 +101,10 @@ pub(crate) struct CycleArguments {
     /// Which case.
     #[command(flatten)]
     pub(crate) case: CaseArguments,
+    /// Write report.html too, a page on which to move along both ways and the complete branch and look
+    /// at their states
+    #[arg(long)]
+    pub(crate) report: bool,
     /// What to do with the results.
     #[command(flatten)]
     pub(crate) output: OutputArguments,
@@ -171,8 +175,8 @@ pub(crate) struct FigureArguments {
 /// Which sweep, and how to share the work.
 #[derive(Debug, Args)]
 pub(crate) struct SweepArguments {
-    /// A sweep file: a case file that also says which keys vary
-    #[arg(value_name = "SWEEP.toml")]
+    /// A sweep file, a case file that also says which keys vary; or a name from "arclen list"
+    #[arg(value_name = "SWEEP.toml|NAME")]
     pub(crate) sweep: PathBuf,
     /// Number of threads [default: all cores]
     #[arg(long, value_name = "N")]

@@ -108,7 +108,8 @@ fn check_prints_a_case_that_checks() {
 #[test]
 fn list_names_the_shipped_cases() {
     let output = arclen(place().path(), &["list"]);
-    for name in ["fig06", "fig07", "fig12", "fig16", "cantilever", "polymer", "ring-load"] {
+    let names = ["fig06", "fig07", "fig12", "fig16", "cantilever", "polymer", "ring-load", "phase"];
+    for name in names {
         assert!(text(&output.stdout).contains(&format!("\n  {name} ")), "{name}");
     }
 }

@@ -39,7 +39,15 @@ fn a_report_is_written_where_it_is_asked_for() {
     assert!(!place.path().join("without/report.html").exists());
     arclen(&["trace", "fig06", "--elements", "40", "--report", "--out", "trace"]);
     arclen(&["diagram", "cusp", "--report", "--out", "diagram"]);
-    for (folder, states) in [("trace", true), ("diagram", false)] {
+    let ring = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/ring-load.toml");
+    let ring = ["trace", ring.to_str().unwrap(), "--elements", "80", "--set", "path.end=10"];
+    arclen(&[&ring[..], &["--report", "--out", "ring"]].concat());
+    let page = fs::read_to_string(place.path().join("ring/report.html")).unwrap();
+    assert!(
+        page.contains("\"bounds\":\"planes of the rings\"") && page.contains("\"pressure\":[]")
+    );
+    assert!(page.contains("\"flags\":{\"admissible\":[false,"));
+    for (folder, states) in [("trace", true), ("diagram", false), ("ring", true)] {
         let page = fs::read_to_string(place.path().join(folder).join("report.html")).unwrap();
         assert!(page.starts_with("<!DOCTYPE html>"));
         assert_eq!(page.contains("\"sigma\":["), states, "{folder}");

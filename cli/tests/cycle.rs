@@ -97,6 +97,46 @@ fn a_grip_s_cycle_leaves_its_files_and_closes() {
 }
 
 #[test]
+fn a_report_goes_both_ways() {
+    let place = tempfile::tempdir().unwrap();
+    let words = ["cycle", "fig16", "--elements", "60", "--report", "-q", "--no-pictures"];
+    let sets = ["--set", "path.start=1.2", "--set", "path.end=0.9", "--out", "o"];
+    let output = arclen(place.path(), &[&words[..], &sets[..]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let page = fs::read_to_string(place.path().join("o/report.html")).unwrap();
+    let start = page.find("id=\"data\">").unwrap() + 10;
+    let end = start + page[start..].find("</script>").unwrap();
+    let data: Value = serde_json::from_str(&page[start..end]).unwrap();
+    let json = read(&place.path().join("o/cycle.json"));
+    let curves = data["curves"].as_array().unwrap();
+    let labels: Vec<_> = curves.iter().map(|curve| curve["label"].as_str().unwrap()).collect();
+    assert_eq!(labels, ["complete branch", "approach", "retract"]);
+    let at = |curve: &Value, name: &str, point: usize| number(&curve["columns"][name][point]);
+    let mut points = 0;
+    for (curve, jump) in curves[1..].iter().zip(json["jumps"].as_array().unwrap()) {
+        let count = curve["unstable"].as_array().unwrap().len();
+        points += count;
+        assert_eq!(curve["states"].as_array().unwrap().len(), count);
+        let jumps = curve["jumps"].as_array().unwrap();
+        assert_eq!(jumps.len(), 1);
+        let after = jumps[0].as_u64().unwrap() as usize;
+        for (name, point) in [("before", after - 1), ("after", after)] {
+            near(&jump[format!("z0_{name}")], at(curve, "z0", point), 1e-6);
+            near(&jump[format!("force_{name}")], at(curve, "force", point), 1e-6);
+        }
+        let kinds = ["stretching", "bending", "film", "gas", "surface"];
+        for point in 0..count {
+            let sum: f64 = kinds.map(|k| at(curve, &format!("energy_{k}"), point)).iter().sum();
+            assert!((sum - at(curve, "energy_total", point)).abs() < 1e-8, "{point}");
+        }
+    }
+    // where the plates turn is on both ways
+    assert_eq!(points as u64, json["points"].as_u64().unwrap() + 1);
+    let last = curves[1]["unstable"].as_array().unwrap().len() - 1;
+    assert_eq!((at(&curves[1], "z0", last), at(&curves[2], "z0", 0)), (0.9, 0.9));
+}
+
+#[test]
 fn a_cantilever_and_a_dead_load_jump_along_their_lines() {
     let place = tempfile::tempdir().unwrap();
     let (output, json) = cycle(place.path(), "cantilever", &["path.end=0.9"]);

@@ -81,9 +81,11 @@
     const fill = filled ? "currentColor" : "none";
     return sketch(14, { d: FORMS[shape], fill, stroke: "currentColor", "stroke-width": filled ? 0 : 2 });
   };
-  const sample = (stroke, dashed) => sketch(26, {
-    d: "M-13 0H13", style: `stroke: ${stroke}`, "stroke-width": 2.5, "stroke-dasharray": dashed ? "6 4" : "none",
+  const sample = (stroke, dashes = "none") => sketch(26, {
+    d: "M-13 0H13", style: `stroke: ${stroke}`, "stroke-width": 2.5, "stroke-dasharray": dashes,
   });
+  const DASHED = "6 4";
+  const DOTTED = "2 3";
 
   // ---- the curves: stretches of one stability, neighbours sharing the point between them
   const marked = curves.map((curve) => new Map(curve.marks.map((mark) => [mark.point, mark.kind])));
@@ -92,9 +94,11 @@
     // where stability changes at a special point the segment goes with its other end
     const dashed = (i) => (bad(i) === bad(i + 1) || !(marked[k].has(i) && !marked[k].has(i + 1)) ? bad(i) : bad(i + 1));
     const found = [];
+    const jumps = new Set(curve.jumps);
     for (let i = 0; i + 1 < curve.unstable.length; i += 1) {
       const last = found[found.length - 1];
-      if (last && last.dashed === dashed(i)) last.to = i + 1;
+      if (jumps.has(i + 1)) found.push({ from: i, to: i + 1, dashed: false, jump: true });
+      else if (last && !last.jump && last.dashed === dashed(i)) last.to = i + 1;
       else found.push({ from: i, to: i + 1, dashed: dashed(i) });
     }
     return found;
@@ -110,7 +114,7 @@
     curve.point = 0;
   });
 
-  const selected = { curve: 0 };
+  const selected = { curve: Math.min(data.selected, Math.max(0, curves.length - 1)) };
   const current = () => curves[selected.curve];
   const state = (curve) => {
     // the nearest one that is kept
@@ -148,6 +152,7 @@
   };
 
   const AXIS = { x: 46, y: 72, top: 8, right: 14 };
+  const TOGETHER = 8;
   const figures = [];
 
   /** One chart: `lines()` says what is drawn in it, `range(axis)` what it shows. */
@@ -169,6 +174,21 @@
       stroke: () => ink.ink, values: ticks, space: scale === "x" ? 58 : 34,
       grid: { stroke: () => ink.grid, width: 1 }, ticks: { stroke: () => ink.edge, width: 1, size: 5 },
     });
+    /** The head of an arrow in the middle of a jump. */
+    const arrow = (u, line, ratio) => {
+      const ends = [line.from, line.to].map((i) => [line.x[i], line.y[i]]);
+      if (ends.flat().some((value) => value === null || value === undefined)) return;
+      const [[x0, y0], [x1, y1]] = ends.map(([a, b]) => [u.valToPos(a, "x", true), u.valToPos(b, "y", true)]);
+      if (Math.hypot(x1 - x0, y1 - y0) < 14 * ratio) return;
+      const { ctx } = u;
+      ctx.save();
+      ctx.translate(0.5 * (x0 + x1), 0.5 * (y0 + y1));
+      ctx.rotate(Math.atan2(y1 - y0, x1 - x0));
+      ctx.scale(ratio, ratio);
+      ctx.fillStyle = line.colour;
+      ctx.fill(new Path2D("M7 0L-5 5V-5Z"));
+      ctx.restore();
+    };
     const draw = (u) => {
       const { ctx, bbox } = u;
       const ratio = devicePixelRatio;
@@ -180,7 +200,8 @@
       for (const line of lines(u)) {
         ctx.strokeStyle = line.colour;
         ctx.lineWidth = line.width * ratio;
-        ctx.setLineDash(line.dashed ? [7 * ratio, 5 * ratio] : []);
+        const dashes = line.jump ? [2, 3] : line.dashed ? [7, 5] : [];
+        ctx.setLineDash(dashes.map((length) => length * ratio));
         ctx.beginPath();
         let pen = false;
         for (let i = line.from; i <= line.to; i += 1) {
@@ -197,6 +218,7 @@
           pen = true;
         }
         ctx.stroke();
+        if (line.jump) arrow(u, line, ratio);
       }
       ctx.setLineDash([]);
       for (const mark of marks ? marks() : []) {
@@ -304,18 +326,20 @@
         });
         return { curve: line.curve, places };
       });
-      let best = reach * reach;
-      let found = null;
+      const none = { distance: reach * reach };
+      let best = none;
+      let own = none;
       for (const { curve, places } of self.pixels) {
         for (let i = 0; i < places.length; i += 2) {
           const distance = (places[i] - left) ** 2 + (places[i + 1] - top) ** 2;
-          if (distance < best) {
-            best = distance;
-            found = { curve, point: i / 2 };
-          }
+          if (distance < best.distance) best = { curve, point: i / 2, distance };
+          if (curve === selected.curve && distance < own.distance) own = { curve, point: i / 2, distance };
         }
       }
-      return found;
+      // where curves run together, the selected one stays selected
+      const near = Math.sqrt(own.distance) < Math.sqrt(best.distance) + TOGETHER;
+      if (own !== none && near) best = own;
+      return best === none ? null : best;
     };
     if (pick) {
       const heard = (event, reach) => want({ figure: self, left: event.offsetX, top: event.offsetY, reach });
@@ -372,7 +396,8 @@
 
   // ---- the state and the special points, in numbers
   const names = [...new Set(curves.flatMap((curve) => Object.keys(curve.columns)))];
-  const fields = new Map(["curve", ...names, "stability", "special point"].map((name) => [name, element("dd")]));
+  const flags = [...new Set(curves.flatMap((curve) => Object.keys(curve.flags)))];
+  const fields = new Map(["curve", ...names, ...flags, "stability", "special point"].map((name) => [name, element("dd")]));
   document.getElementById("state").append(element("dl", {},
     ...[...fields].map(([name, field]) => element("div", {}, element("dt", { textContent: words(name) }), field))));
   const stability = (unstable) => (unstable < 0 ? "not known"
@@ -411,6 +436,10 @@
     };
     put("curve", `${curve.label}, point ${at + 1} of ${curve.size}`);
     for (const name of names) put(name, text(curve.columns[name]?.[at]));
+    for (const name of flags) {
+      const flag = curve.flags[name]?.[at];
+      put(name, flag === undefined ? "–" : flag ? "yes" : "no");
+    }
     put("stability", stability(curve.unstable[at]));
     put("special point", kind ?? "–");
     const { input, output } = sliders[selected.curve];
@@ -445,7 +474,12 @@
   const kinds = [...new Set(curves.flatMap((curve) => curve.marks.map((mark) => mark.kind)))];
   const anyUnstable = curves.some((curve) => curve.stretches.some((stretch) => stretch.dashed));
   const legendOf = (key, entries) => key.replaceChildren(...entries.map(([picture, label]) => element("span", {}, picture, label)));
-  const lineKey = () => [[sample("var(--soft)", false), "stable"], ...(anyUnstable ? [[sample("var(--soft)", true), "unstable"]] : [])];
+  const anyJump = curves.some((curve) => curve.stretches.some((stretch) => stretch.jump));
+  const lineKey = () => [
+    [sample("var(--soft)"), "stable"],
+    ...(anyUnstable ? [[sample("var(--soft)", DASHED), "unstable"]] : []),
+    ...(anyJump ? [[sample("var(--soft)", DOTTED), "jump"]] : []),
+  ];
   const states = curves.some((curve) => curve.states.length > 0);
 
   const of_curves = (chart, first) => {
@@ -460,14 +494,14 @@
         const order = curves.map((_, k) => k).filter((k) => k !== selected.curve).concat(selected.curve);
         return order.flatMap((k) => curves[k].stretches.map((stretch) => ({
           ...stretch, x: column(curves[k], x), y: column(curves[k], y), colour: colour(k),
-          width: several && k === selected.curve ? 3.2 : 2,
+          width: stretch.jump ? 1.5 : several && k === selected.curve ? 3.2 : 2,
         })));
       },
       marks: () => curves.flatMap((curve) => curve.marks.map(({ point, kind }) => (
         { kind, x: column(curve, x)[point] ?? null, y: column(curve, y)[point] ?? null }))),
       point: () => ({ x: column(current(), x)[current().point], y: column(current(), y)[current().point] }),
       pick: () => curves.map((curve, k) => ({ curve: k, x: column(curve, x), y: column(curve, y) })),
-      legend: (key) => legendOf(key, [...lineKey(), ...(first ? kinds.map((kind) => [glyph(kind), kind]) : [])]),
+      legend: (key) => legendOf(key, [...lineKey(), ...(first ? kinds.map((kind) => [glyph(kind), kind === "jump" ? "after a jump" : kind]) : [])]),
     };
   };
   const of_parts = (chart) => {
@@ -479,10 +513,10 @@
       height: (width) => Math.round(Math.min(360, Math.max(260, 0.72 * width))),
       range: (scale) => extent(scale === "x" ? [column(current(), x)] : parts()),
       lines: () => parts().flatMap((values, k) => current().stretches.map((stretch) => (
-        { ...stretch, x: column(current(), x), y: values, colour: colour(hue(k)), width: 2 }))),
+        { ...stretch, x: column(current(), x), y: values, colour: colour(hue(k)), width: stretch.jump ? 1.2 : 2 }))),
       point: () => ({ x: column(current(), x)[current().point], y: parts()[0][current().point] }),
       pick: () => parts().map((values) => ({ curve: selected.curve, x: column(current(), x), y: values })),
-      legend: (key) => legendOf(key, [...chart.columns.map(([, label], k) => [sample(`var(--c${hue(k)})`, false), label]), ...lineKey().slice(1)]),
+      legend: (key) => legendOf(key, [...chart.columns.map(([, label], k) => [sample(`var(--c${hue(k)})`), label]), ...lineKey().slice(1)]),
     };
   };
   const of_shape = () => {
@@ -513,7 +547,7 @@
           { x: one.sigma, y: one.z, from: 0, to: one.sigma.length - 1, right, up, colour: colour(selected.curve), width: 2.5, dashed }));
         return [{ ...rest, colour: ink.soft }, ...plates, ...quarters];
       },
-      legend: (key) => legendOf(key, [[sample("var(--ink)", false), "plates"], [sample("var(--soft)", true), "sphere at rest"]]),
+      legend: (key) => legendOf(key, [[sample("var(--ink)"), data.bounds], [sample("var(--soft)", DASHED), "sphere at rest"]]),
     };
   };
   const of_pressure = () => {
@@ -540,7 +574,7 @@
   if (main) figure(main.columns.length > 1 ? of_parts(main) : of_curves(main, true));
   if (states) figure(of_shape());
   for (const chart of charts.slice(1)) figure(chart.columns.length > 1 ? of_parts(chart) : of_curves(chart, false));
-  if (states) figure(of_pressure());
+  if (curves.some((curve) => curve.states.some((one) => one.pressure.length > 0))) figure(of_pressure());
   document.getElementById("charts").classList.toggle("alone", !states);
   // the shape's units depend on its size, which is known only now
   for (const one of figures) {

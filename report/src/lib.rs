@@ -23,6 +23,10 @@ pub struct Report {
     pub charts: Vec<Chart>,
     /// The curves.
     pub curves: Vec<Curve>,
+    /// The curve that is selected at first.
+    pub selected: usize,
+    /// What stands above and below the shell, for the legend.
+    pub bounds: String,
 }
 
 /// A chart of the curves.
@@ -51,6 +55,11 @@ pub struct Curve {
     pub unstable: Vec<i32>,
     /// Special points.
     pub marks: Vec<Mark>,
+    /// Properties by name, one value for every point.
+    #[serde(serialize_with = "round::flags")]
+    pub flags: Vec<(String, Vec<bool>)>,
+    /// Points to which the state before them jumps; in order.
+    pub jumps: Vec<usize>,
     /// States along the curve, in order.
     pub states: Vec<State>,
 }
@@ -64,12 +73,12 @@ pub struct Mark {
     pub kind: String,
 }
 
-/// The state at a point: an axisymmetric, mirror-symmetric shell between two plates.
+/// The state at a point: an axisymmetric, mirror-symmetric shell between two plates or rings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct State {
     /// The point of the curve.
     pub point: usize,
-    /// Height of the upper plate.
+    /// Height of the upper plate, or of the plane of the upper ring.
     #[serde(serialize_with = "round::number")]
     pub plate: f64,
     /// The meridian, from the pole to the equator.

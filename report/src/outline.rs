@@ -7,7 +7,7 @@ use serde::Serialize;
 const PLACE: f64 = 1e-4;
 const PRESSURE: f64 = 1e-3;
 
-/// A meridian and the pressure on it.
+/// A meridian, and the pressure on it if there is one.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Outline {
     /// Distances from the axis.
@@ -16,7 +16,7 @@ pub struct Outline {
     /// Heights above the equator.
     #[serde(serialize_with = "round::numbers")]
     pub z: Vec<f64>,
-    /// Pressure on it.
+    /// Pressure on it; empty without one.
     #[serde(serialize_with = "round::numbers")]
     pub pressure: Vec<f64>,
 }
@@ -39,14 +39,17 @@ impl Outline {
             if kept.len() <= most.max(2) {
                 let of = |values: &[f64]| kept.iter().map(|&i| values[i]).collect();
                 let (sigma, z) = (of(&self.sigma), of(&self.z));
-                return Outline { sigma, z, pressure: of(&self.pressure) };
+                let pressure =
+                    if self.pressure.is_empty() { Vec::new() } else { of(&self.pressure) };
+                return Outline { sigma, z, pressure };
             }
             coarse *= 1.5;
         }
     }
 
     fn len(&self) -> usize {
-        self.sigma.len().min(self.z.len()).min(self.pressure.len())
+        let places = self.sigma.len().min(self.z.len());
+        if self.pressure.is_empty() { places } else { places.min(self.pressure.len()) }
     }
 
     /// Indices of the points without which a straight line would be off by more than a tolerance.
@@ -75,6 +78,10 @@ impl Outline {
         let (x, y) = (self.sigma[at] - self.sigma[from], self.z[at] - self.z[from]);
         let length = dx.hypot(dy);
         let across = if length > 0.0 { (x * dy - y * dx).abs() / length } else { x.hypot(y) };
+        let across = across / place;
+        if self.pressure.is_empty() {
+            return across;
+        }
         // the pressure is drawn over sigma, or its place along the line where that stands still
         let part = if length > 0.0 {
             ((x * dx + y * dy) / (length * length)).clamp(0.0, 1.0)
@@ -83,7 +90,7 @@ impl Outline {
         };
         let line = self.pressure[from] + part * (self.pressure[to] - self.pressure[from]);
         let off = (self.pressure[at] - line).abs() / pressure;
-        (across / place).max(if off.is_nan() { 0.0 } else { off })
+        across.max(if off.is_nan() { 0.0 } else { off })
     }
 }
 
@@ -125,5 +132,14 @@ mod tests {
         let line =
             Outline { sigma: vec![0.0, 0.5, 1.0], z: vec![1.0; 3], pressure: vec![f64::NAN; 3] };
         assert_eq!(line.thinned(10).sigma, [0.0, 1.0]);
+    }
+
+    #[test]
+    fn a_meridian_needs_no_pressure() {
+        let bare = Outline { pressure: Vec::new(), ..circle() };
+        let thin = bare.thinned(100);
+        assert!((10..=100).contains(&thin.sigma.len()), "{}", thin.sigma.len());
+        assert!(thin.pressure.is_empty());
+        assert_eq!(thin.sigma.last(), bare.sigma.last());
     }
 }

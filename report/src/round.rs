@@ -52,6 +52,13 @@ pub(crate) fn columns<S: Serializer>(
     map.end()
 }
 
+pub(crate) fn flags<S: Serializer>(
+    flags: &[(String, Vec<bool>)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(flags.iter().map(|(name, values)| (name, values)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::Numbers;

@@ -6,12 +6,13 @@ import { execFileSync } from "node:child_process";
 import { mkdtempSync, rmSync, statSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { pathToFileURL } from "node:url";
+import { fileURLToPath, pathToFileURL } from "node:url";
 import { after, before, test } from "node:test";
 import { chromium } from "playwright-core";
 
 const { ARCLEN, BROWSER } = process.env;
 const FRAME = 16;
+const CASES = fileURLToPath(new URL("../../cases/", import.meta.url));
 let folder;
 let browser;
 
@@ -28,6 +29,8 @@ before(async () => {
   pages.contact = report("contact", "trace", "fig12", "--elements", "100");
   pages.diagram = report("diagram", "diagram", "enz");
   pages.long = report("long", "trace", "fig06", "--elements", "100", "--set", "path.max_step=0.00128");
+  pages.cycle = report("cycle", "cycle", "fig16", "--elements", "80", "--set", "path.start=1.2", "--set", "path.end=0.9");
+  pages.ring = report("ring", "trace", CASES + "ring-load.toml", "--elements", "80", "--set", "path.end=12");
   browser = await chromium.launch({ executablePath: BROWSER, args: ["--no-sandbox"] });
 });
 
@@ -140,11 +143,57 @@ test("tab goes from curve to curve of a diagram, which has no shapes", async () 
   });
 });
 
+test("a cycle jumps on both of its ways", async () => {
+  await visit("cycle", { viewport: { width: 1280, height: 900 } }, async (page) => {
+    const { curves } = await data(page);
+    assert.match(await value(page, "curve"), /^approach, point 1 of/);
+    const { jumps: [after] } = curves[2];
+    await page.getByRole("button", { name: "jump", exact: true }).nth(1).click();
+    await frames(page);
+    assert.match(await value(page, "curve"), new RegExp(`^retract, point ${after + 1} of`));
+    const shape = await pixels(page, "Shape");
+    await page.locator("#curve-2").focus();
+    await page.keyboard.press("ArrowLeft");
+    await frames(page);
+    // the plates of a grip stand still
+    assert.equal(Number(await value(page, "z0")), Number(curves[2].columns.z0[after].toPrecision(6)));
+    assert.equal(Number(await value(page, "force")), Number(curves[2].columns.force[after - 1].toPrecision(6)));
+    assert.notEqual(await pixels(page, "Shape"), shape);
+    // where the ways run together the pointer stays on the one that is selected
+    const box = await page.locator('figure[aria-label="Force against plate distance"] .u-over').boundingBox();
+    const { z0, force } = curves[2].columns;
+    const at = (values, value) => (value - Math.min(...values)) / (Math.max(...values) - Math.min(...values));
+    const place = (k) => [
+      box.x + (0.04 + 0.92 * at(z0, z0[k])) * box.width,
+      box.y + (0.96 - 0.92 * at(force, force[k])) * box.height,
+    ];
+    for (const k of [2, 6, 10]) {
+      await page.mouse.move(...place(k));
+      await frames(page);
+      assert.match(await value(page, "curve"), /^retract/);
+    }
+  });
+});
+
+test("a ring-loaded shell has rings and no film", async () => {
+  await visit("ring", { viewport: { width: 1280, height: 900 } }, async (page) => {
+    assert.equal(await page.locator('figure[aria-label="Pressure of the film"]').count(), 0);
+    assert.match(await page.locator('figure[aria-label="Shape"] .legend').textContent(), /planes of the rings/);
+    const shape = await pixels(page, "Shape");
+    await page.locator("#curve-0").focus();
+    await page.keyboard.press("End");
+    await frames(page);
+    assert.equal(Number(await value(page, "alpha")), 12);
+    assert.equal(await value(page, "admissible"), "no");
+    assert.notEqual(await pixels(page, "Shape"), shape);
+  });
+});
+
 test("every control has a name, and nothing sticks out, in all widths and schemes", async () => {
   for (const width of [1280, 400]) {
     const backs = [];
     for (const colorScheme of ["light", "dark"]) {
-      for (const which of ["contact", "diagram"]) {
+      for (const which of ["contact", "diagram", "cycle", "ring"]) {
         await visit(which, { viewport: { width, height: 800 }, colorScheme }, async (page) => {
           await frames(page);
           const wide = await page.evaluate(() => document.documentElement.scrollWidth);

@@ -20,7 +20,7 @@ pub(crate) use device::DeviceCase;
 pub(crate) use document::Override;
 pub(crate) use error::LoadError;
 pub(crate) use physical::{PhysicalCase, Stiffness};
-pub(crate) use source::{SHIPPED, load, load_text};
+pub(crate) use source::{SHIPPED, SWEEPS, load, load_text};
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -93,6 +93,12 @@ struct Resolver<'a> {
 
 impl<'a> Resolver<'a> {
     fn run(mut self, default_name: &str) -> Option<LoadedCase> {
+        if let Some(node) = self.root.get("vary") {
+            let why = "such a file is for \"arclen sweep\"; for a single case, leave out [[vary]]";
+            let why = Complaint::Conflict(why.to_string());
+            self.reader.push(node.origin, "vary".to_string(), None, why);
+            return None;
+        }
         let name = match self.root.get("name") {
             None => Some(default_name.to_string()),
             Some(_) => self.own_name(),

@@ -19,6 +19,9 @@ pub(crate) const SHIPPED: &[(&str, &str)] = &[
     ("ring-load", include_str!("../../../cases/ring-load.toml")),
 ];
 
+/// The sweeps that come with the program, likewise.
+pub(crate) const SWEEPS: &[(&str, &str)] = &[("phase", include_str!("../../../cases/phase.toml"))];
+
 /// Case files are small; what is longer is something else.
 const LONGEST: u64 = 1 << 20;
 
@@ -32,7 +35,8 @@ pub(crate) fn load(
     catalogue: &[CatalogueEntry],
 ) -> Result<LoadedCase, LoadError> {
     let word = what.to_string_lossy();
-    if let Some((name, text)) = SHIPPED.iter().find(|(name, _)| *name == word) {
+    // that of a sweep is no case, as its text is told
+    if let Some((name, text)) = SHIPPED.iter().chain(SWEEPS).find(|(name, _)| *name == word) {
         return load_text(name, name, text, overrides, catalogue);
     }
     let built_in = ["contact", "ring-load"].contains(&word.as_ref());

@@ -2,6 +2,7 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
+use super::report::{REPORT, cycle_report};
 use crate::arguments::CycleArguments;
 use crate::case::ResolvedCase;
 use crate::exit::Exit;
@@ -22,13 +23,13 @@ pub(super) fn cycle(arguments: &CycleArguments) -> Exit {
             Ok(loaded) => loaded.case,
             Err(exit) => return exit,
         };
-    let names = [CYCLE, PATH, BRANCH, CASE, pictures::LOOP];
+    let names = [CYCLE, PATH, BRANCH, CASE, REPORT, pictures::LOOP];
     let folder = match arguments.output.folder(&case.name, &names) {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
     let mut observer = Observer::new(Some(case.path), arguments.output.quiet);
-    let outcome = run_cycle(&case, &mut |progress| observer.hear(progress));
+    let outcome = run_cycle(&case, arguments.report, &mut |progress| observer.hear(progress));
     observer.finish();
     match outcome {
         Err(error) => {
@@ -51,6 +52,9 @@ fn deliver(
         made.file(CASE, case.to_toml());
         made.attempt(PATH, branch_csv(&cycle_table(result)));
         made.attempt(BRANCH, branch_csv(&result.branch));
+        if arguments.report {
+            made.attempt(REPORT, cycle_report(result));
+        }
         if !arguments.output.no_pictures {
             made.files(pictures::draw_cycle(&result.pictures));
         }

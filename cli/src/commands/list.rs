@@ -1,6 +1,6 @@
-//! `arclen list`: everything that can be traced by name.
+//! `arclen list`: everything that has a name.
 
-use crate::case::SHIPPED;
+use crate::case::{SHIPPED, SWEEPS};
 use crate::exit::Exit;
 use crate::run::catalogue;
 use std::fmt::Write as _;
@@ -12,6 +12,10 @@ pub(super) fn list() -> Exit {
     let width = names.map(|name| name.len() + 2).max().unwrap_or(0);
     let mut out = String::from("cases\n");
     for (name, text) in SHIPPED {
+        let _ = writeln!(out, "  {name:<width$}{}", summary(text));
+    }
+    out.push_str("sweeps\n");
+    for (name, text) in SWEEPS {
         let _ = writeln!(out, "  {name:<width$}{}", summary(text));
     }
     if !entries.is_empty() {
@@ -42,7 +46,7 @@ mod tests {
 
     #[test]
     fn every_shipped_case_says_what_it_is_in_a_line() {
-        for (name, text) in SHIPPED {
+        for (name, text) in SHIPPED.iter().chain(SWEEPS) {
             let line = summary(text);
             assert!((20..110).contains(&line.len()), "{name}: {line}");
         }

@@ -1,7 +1,8 @@
 //! `report.html`: what a command found, as a page to look at.
 
-use crate::output::{ContactRow, TraceResult};
-use report::{Chart, Curve, Mark, Report};
+use crate::output::{ContactRow, CycleResult, Table, TraceResult};
+use crate::run::RING_AXES;
+use report::{Chart, Curve, Mark, Report, State};
 
 /// Name of the file.
 pub(super) const REPORT: &str = "report.html";
@@ -15,8 +16,18 @@ const ENERGIES: [(&str, &str); 6] = [
     ("energy_gas", "gas"),
     ("energy_surface", "surface"),
 ];
+/// The column of words that are "true" or "false".
+const FLAG: &str = "admissible";
 /// Observables of other problems that have a chart each.
 const CHARTS: usize = 4;
+
+/// A curve of a page.
+struct Line<'a> {
+    label: &'a str,
+    table: &'a Table,
+    states: &'a [State],
+    jumps: &'a [usize],
+}
 
 /// The page for branches with their names; `subtitle` is a line below the title. Branches of the
 /// contact problem are drawn as force curves; where they have states, these are shown.
@@ -28,75 +39,158 @@ pub(super) fn report(
     subtitle: &str,
     branches: &[(String, &TraceResult)],
 ) -> Result<String, serde_json::Error> {
-    let first = branches.first().map(|(_, branch)| *branch);
-    let charts = first.map_or_else(Vec::new, |first| {
-        if is_contact(first) { contact_charts(branches) } else { general_charts(first) }
+    let lines: Vec<Line<'_>> = branches
+        .iter()
+        .map(|(label, branch)| Line {
+            label,
+            table: &branch.table,
+            states: &branch.pictures.states,
+            jumps: &[],
+        })
+        .collect();
+    let parameter = branches.first().map_or("", |(_, branch)| &branch.parameter);
+    page(title, subtitle, parameter, &lines, 0)
+}
+
+/// The page for a cycle: both ways and the complete branch, of which the states are given.
+///
+/// # Errors
+/// As [`report`].
+pub(super) fn cycle_report(cycle: &CycleResult) -> Result<String, serde_json::Error> {
+    let ways = cycle.reported.ways.iter().map(|way| Line {
+        label: way.label,
+        table: &way.table,
+        states: &way.states,
+        jumps: &way.jumps,
     });
+    let complete = Line {
+        label: "complete branch",
+        table: &cycle.branch,
+        states: &cycle.reported.branch,
+        jumps: &[],
+    };
+    let lines: Vec<Line<'_>> = [complete].into_iter().chain(ways).collect();
+    // the complete branch lies below the path
+    page(&cycle.case, &cycle.stopped_detail, cycle.parameter, &lines, 1)
+}
+
+fn page(
+    title: &str,
+    subtitle: &str,
+    parameter: &str,
+    lines: &[Line<'_>],
+    selected: usize,
+) -> Result<String, serde_json::Error> {
+    let kind = lines.first().map(|line| Kind::of(line.table));
+    let charts = match kind {
+        Some(Kind::Contact) => contact_charts(lines),
+        Some(Kind::RingLoad) => ring_charts(),
+        Some(Kind::Other) => general_charts(parameter, lines),
+        None => Vec::new(),
+    };
+    let bounds = if kind == Some(Kind::RingLoad) { "planes of the rings" } else { "plates" };
     let report = Report {
         title: title.to_owned(),
         subtitle: subtitle.to_owned(),
         charts,
-        curves: branches.iter().map(|(label, branch)| curve(label, branch)).collect(),
+        curves: lines.iter().map(curve).collect(),
+        selected,
+        bounds: bounds.to_owned(),
     };
     report.html()
 }
 
-fn is_contact(branch: &TraceResult) -> bool {
-    branch.table.columns().starts_with(&ContactRow::COLUMNS.map(str::to_owned))
+/// What a table tells of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Contact,
+    RingLoad,
+    Other,
+}
+
+impl Kind {
+    fn of(table: &Table) -> Self {
+        let columns = table.columns();
+        if columns.starts_with(&ContactRow::COLUMNS.map(str::to_owned)) {
+            Kind::Contact
+        } else if columns.iter().any(|name| name == "ring_height") {
+            Kind::RingLoad
+        } else {
+            Kind::Other
+        }
+    }
 }
 
 fn pair(name: &str, label: &str) -> (String, String) {
     (name.to_owned(), label.to_owned())
 }
 
-/// Force against deformation, unless the force never vanishes, and plate distance; energies.
-fn contact_charts(branches: &[(String, &TraceResult)]) -> Vec<Chart> {
-    let chart = |title: &str, x: &(String, String), y: &str, columns: Vec<(String, String)>| {
-        Chart { title: title.to_owned(), x: x.clone(), y: y.to_owned(), columns }
-    };
-    let force = || vec![pair("force", "force")];
+fn chart(title: &str, x: &(String, String), y: &str, columns: Vec<(String, String)>) -> Chart {
+    Chart { title: title.to_owned(), x: x.clone(), y: y.to_owned(), columns }
+}
+
+fn force() -> Vec<(String, String)> {
+    vec![pair("force", "force")]
+}
+
+/// Force against deformation, unless the force never vanishes, against plate distance, and against
+/// the base of a cantilever; energies.
+fn contact_charts(lines: &[Line<'_>]) -> Vec<Chart> {
     let deformation = pair("deformation", "deformation Δ/R₀");
     let distance = pair("z0", "plate distance z₀/R₀");
     let energies = || ENERGIES.map(|(name, label)| pair(name, label)).to_vec();
-    let counted = branches
-        .iter()
-        .any(|(_, branch)| branch.table.numbers("deformation").iter().any(|d| d.is_finite()));
+    let known =
+        |name: &str| lines.iter().any(|l| l.table.numbers(name).iter().any(|x| x.is_finite()));
     let mut charts = Vec::new();
-    if counted {
+    if known("deformation") {
         charts.push(chart("Force against deformation", &deformation, FORCE, force()));
     }
     charts.push(chart("Force against plate distance", &distance, FORCE, force()));
-    let x = if counted { &deformation } else { &distance };
+    if known("base") {
+        let base = pair("base", "base of the cantilever/R₀");
+        charts.push(chart("Force against base", &base, FORCE, force()));
+    }
+    let x = if known("deformation") { &deformation } else { &distance };
     charts.push(chart("Energies", x, "energy U/(χ R₀²)", energies()));
     charts
 }
 
+/// Force against contact angle and deflection.
+fn ring_charts() -> Vec<Chart> {
+    let (angle, axis) = RING_AXES;
+    let angle = pair("alpha", angle);
+    let deflection = pair("deflection_over_h", "deflection of the ring/h");
+    vec![
+        chart("Force against contact angle", &angle, axis, force()),
+        chart("Force against deflection", &deflection, axis, force()),
+        chart("Energy", &angle, "energy U/(χ R₀²)", vec![pair("energy_total", "total")]),
+    ]
+}
+
 /// Observables against the parameter.
-fn general_charts(branch: &TraceResult) -> Vec<Chart> {
-    let parameter = &branch.parameter;
-    observables(branch)
+fn general_charts(parameter: &str, lines: &[Line<'_>]) -> Vec<Chart> {
+    let x = pair(parameter, parameter);
+    let columns = lines.first().map_or(&[][..], |line| line.table.columns());
+    // the columns between the parameter and the number of unstable modes
+    let observables = columns.iter().skip(2).take_while(|name| *name != "unstable");
+    observables
         .take(CHARTS)
-        .map(|name| Chart {
-            title: format!("{name} against {parameter}"),
-            x: pair(parameter, parameter),
-            y: name.clone(),
-            columns: vec![pair(name, name)],
-        })
+        .map(|name| chart(&format!("{name} against {parameter}"), &x, name, vec![pair(name, name)]))
         .collect()
 }
 
-/// The columns between the parameter and the number of unstable modes.
-fn observables(branch: &TraceResult) -> impl Iterator<Item = &String> {
-    branch.table.columns().iter().skip(2).take_while(|name| *name != "unstable")
-}
-
-fn curve(label: &str, branch: &TraceResult) -> Curve {
-    let table = &branch.table;
-    let shown =
-        |name: &&String| !matches!(name.as_str(), "point" | "unstable" | "event" | "certified");
-    let marks = branch.marked_points().map(|(point, kind)| Mark { point, kind: kind.to_owned() });
+fn curve(line: &Line<'_>) -> Curve {
+    let table = line.table;
+    let shown = |name: &&String| {
+        let elsewhere = matches!(name.as_str(), "point" | "unstable" | "event" | "certified");
+        !elsewhere && *name != FLAG
+    };
+    let marks = table.words("event").map(|(point, kind)| Mark { point, kind: kind.to_owned() });
+    let flag: Vec<bool> = table.words(FLAG).map(|(_, word)| word == "true").collect();
+    // a flag that is not known everywhere is not shown
+    let known = !flag.is_empty() && flag.len() == table.rows().len();
     Curve {
-        label: label.to_owned(),
+        label: line.label.to_owned(),
         columns: table
             .columns()
             .iter()
@@ -109,7 +203,9 @@ fn curve(label: &str, branch: &TraceResult) -> Curve {
             .map(|n| if n.is_finite() { *n as i32 } else { -1 })
             .collect(),
         marks: marks.collect(),
-        states: branch.pictures.states.clone(),
+        flags: known.then(|| (FLAG.to_owned(), flag)).into_iter().collect(),
+        jumps: line.jumps.to_vec(),
+        states: line.states.to_vec(),
     }
 }
 
@@ -138,6 +234,7 @@ mod tests {
         for (name, values) in curve["columns"].as_object().unwrap() {
             assert_eq!(values.as_array().unwrap().len(), result.table.rows().len(), "{name}");
         }
+        assert_eq!((&data["selected"], &data["bounds"]), (&0.into(), &"plates".into()));
         let kinds = result.table.rows().iter().filter(|row| row[15] != crate::output::Cell::Empty);
         assert_eq!(curve["marks"].as_array().unwrap().len(), kinds.count());
     }

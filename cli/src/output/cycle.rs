@@ -58,6 +58,30 @@ pub(crate) struct CycleResult {
     pub(crate) seconds: f64,
     /// What the pictures show.
     pub(crate) pictures: CyclePictures,
+    /// What a report shows, if one was asked for.
+    pub(crate) reported: ReportedCycle,
+}
+
+/// What a report of a cycle shows besides the complete branch.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct ReportedCycle {
+    /// The ways, in the order in which they were gone.
+    pub(crate) ways: Vec<Way>,
+    /// States along the complete branch.
+    pub(crate) branch: Vec<report::State>,
+}
+
+/// One way of a cycle.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Way {
+    /// `approach` or `retract`.
+    pub(crate) label: &'static str,
+    /// Its points, in the columns of a branch.
+    pub(crate) table: Table,
+    /// Rows to which the state before them jumped.
+    pub(crate) jumps: Vec<usize>,
+    /// States along it.
+    pub(crate) states: Vec<report::State>,
 }
 
 /// A state on the path.

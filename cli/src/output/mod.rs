@@ -16,8 +16,8 @@ mod table;
 pub(crate) mod tests;
 
 pub(crate) use checkpoint::Checkpoint;
-pub(crate) use cycle::{CycleResult, FoldRecord, JumpRecord, PathRow, StretchRecord};
-pub(crate) use cycle::{cycle_json, cycle_summary, cycle_table};
+pub(crate) use cycle::{CycleResult, FoldRecord, JumpRecord, PathRow, ReportedCycle};
+pub(crate) use cycle::{StretchRecord, Way, cycle_json, cycle_summary, cycle_table};
 pub(crate) use diagram::{BranchRecord, DiagramResult, From, NearRecord};
 pub(crate) use diagram::{diagram_json, diagram_summary};
 pub(crate) use events::events_json;

@@ -97,6 +97,15 @@ impl Table {
         self.rows.iter().map(number).collect()
     }
 
+    /// The words of a column, with the numbers of their rows.
+    pub(crate) fn words(&self, column: &str) -> impl Iterator<Item = (usize, &str)> {
+        let at = self.columns.iter().position(|name| name == column);
+        self.rows.iter().enumerate().filter_map(move |(row, cells)| match &cells[at?] {
+            Cell::Text(word) => Some((row, word.as_str())),
+            _ => None,
+        })
+    }
+
     /// Add a row; a short one is filled up with empty cells, what is too long is cut.
     pub(crate) fn push(&mut self, mut row: Vec<Cell>) {
         row.resize(self.columns.len(), Cell::Empty);
@@ -306,17 +315,6 @@ pub(crate) struct TraceResult {
     pub(crate) seconds: f64,
     /// What the pictures show.
     pub(crate) pictures: Pictures,
-}
-
-impl TraceResult {
-    /// The points that are special, and their kinds.
-    pub(crate) fn marked_points(&self) -> impl Iterator<Item = (usize, &str)> {
-        let column = self.table.columns().iter().position(|name| name == "event");
-        self.table.rows().iter().enumerate().filter_map(move |(point, row)| match &row[column?] {
-            Cell::Text(kind) => Some((point, kind.as_str())),
-            _ => None,
-        })
-    }
 }
 
 /// What the pictures of a trace show; a picture without data is not drawn.

@@ -1,11 +1,12 @@
 //! The contact problem: a shell between two plates.
 
 use super::form::{StabilityColumns, certified, form};
+use super::states::of_contact;
 use super::{Observer, RunError, listen, settings};
 use crate::case::{ContactCase, DeviceCase, Law, ResolvedCase};
 use crate::output::{ContactRow, EventRecord, MaxwellRecord, Pictures, Table, TraceResult};
 use crate::pictures::{Curve, Mark, Profile, Shape};
-use continuation::{Branch, Point, Problem, Settings, TraceError};
+use continuation::{Point, Problem, Settings, TraceError};
 use shell_contact::device::{MaxwellPoint, StartError, maxwell_points, trace_loaded};
 use shell_contact::{ContactBranch, ContactProblem, Device, LoadedProblem};
 use shell_contact::{Dimensionless, Mesh, Shell, trace_contact};
@@ -38,7 +39,7 @@ pub(super) fn run_reported(
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
     let Traced { problem, branch, maxwell, seconds } = traced(case, contact, observer)?;
-    let states = states(&problem, &branch.branch, branch.branch.points.len());
+    let states = of_contact(&problem, &branch.branch, branch.branch.points.len());
     let pictures = Pictures { states, ..pictures(&case.name, &problem, &branch) };
     Ok(TraceResult { pictures, maxwell: Some(maxwell), ..result(case, &branch, seconds) })
 }
@@ -382,40 +383,4 @@ fn chosen(rows: &[ContactRow]) -> Vec<usize> {
     }
     chosen.dedup();
     chosen
-}
-
-/// Samples along the meridian from which the points of a report are chosen.
-const FINE: usize = 601;
-/// Points of a meridian in a report, and states in all, so that it stays a file to be sent about.
-const OUTLINE: usize = 110;
-const STATES: usize = 800;
-
-/// The states along a branch for a report of `points` points in all: every one, or as many as there
-/// is room for and those at special points.
-pub(super) fn states(
-    problem: &ContactProblem,
-    branch: &Branch,
-    points: usize,
-) -> Vec<report::State> {
-    let every = points.div_ceil(STATES).max(1);
-    let last = branch.points.len().saturating_sub(1);
-    let mut states = Vec::new();
-    for (index, point) in branch.points.iter().enumerate() {
-        if index % every != 0 && index != last && point.event.is_none() {
-            continue;
-        }
-        // under a device the plate's distance is the last unknown
-        let plate = point.u.get(problem.dim()).copied().unwrap_or(point.p);
-        let parameters = problem.parameters_at(plate);
-        let u = &point.u[..problem.dim()];
-        let Ok(profile) = problem.profile(u, &parameters, FINE) else { continue };
-        let outline = report::Outline {
-            sigma: profile.sigma,
-            z: profile.z,
-            pressure: profile.disjoining_pressure,
-        };
-        let outline = outline.thinned(OUTLINE);
-        states.push(report::State { point: index, plate, outline });
-    }
-    states
 }

@@ -1,9 +1,9 @@
 //! A cycle: the complete branch, the path once to and fro, and what it dissipates.
 
 use super::contact::{SAMPLES, device, follow, loaded_path, not_held, path, result, row, shell};
-use super::{Observer, RunError, listen};
+use super::{Observer, RunError, listen, ways};
 use crate::case::{ProblemCase, ResolvedCase};
-use crate::output::{CycleResult, FoldRecord, JumpRecord, PathRow, StretchRecord};
+use crate::output::{CycleResult, FoldRecord, JumpRecord, PathRow, ReportedCycle, StretchRecord};
 use crate::pictures::{Curve, CyclePictures, Mark, Shape};
 use continuation::{EventKind, Problem, Settings};
 use shell_contact::device::{
@@ -13,12 +13,13 @@ use shell_contact::device::{
 use shell_contact::{ContactBranch, ContactProblem, Device, LoadedProblem};
 use std::time::Instant;
 
-/// Travel a case to and fro.
+/// Travel a case to and fro; `reported` also takes the states on the way, for a report.
 ///
 /// # Errors
 /// When there is no result at all; a cycle that ends early is a result.
 pub(crate) fn run_cycle(
     case: &ResolvedCase,
+    reported: bool,
     observer: &mut Observer<'_>,
 ) -> Result<CycleResult, RunError> {
     let name = case.name.clone();
@@ -77,6 +78,11 @@ pub(crate) fn run_cycle(
         newton_iterations: cycle.newton_iterations + branch.statistics.newton_iterations,
         seconds,
         pictures: pictures(&case.name, &problem, &traced, &cycle),
+        reported: if reported {
+            ways::reported(&problem, &traced, &cycle)
+        } else {
+            ReportedCycle::default()
+        },
         branch: result(case, &traced, 0.0).table,
         points: path_rows,
     })
@@ -99,7 +105,7 @@ fn go<P: Loading>(
 }
 
 /// The word for a direction.
-fn word(direction: Direction) -> &'static str {
+pub(super) fn word(direction: Direction) -> &'static str {
     match direction {
         Direction::Approach => "approach",
         Direction::Retract => "retract",

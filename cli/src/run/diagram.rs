@@ -1,6 +1,6 @@
 //! Whole diagrams, of every kind of problem.
 
-use super::{RunError, contact, general, ring_load};
+use super::{RunError, contact, general, ring_load, states};
 use crate::case::{ProblemCase, ResolvedCase};
 use crate::output::{BranchRecord, DiagramResult, From, NearRecord, TraceResult};
 use crate::pictures::{Curve, Mark};
@@ -161,7 +161,8 @@ pub(crate) fn run_diagram(
                     let curve = curve(&traced.branch, "force");
                     let mut result = contact::result(case, &traced, 0.0);
                     if reported {
-                        result.pictures.states = contact::states(&problem, &traced.branch, points);
+                        result.pictures.states =
+                            states::of_contact(&problem, &traced.branch, points);
                     }
                     (result, curve)
                 },
@@ -192,9 +193,14 @@ pub(crate) fn run_diagram(
                 error => RunError::Diagram { case: case.name.clone(), error },
             })?;
             let diagram = ring_load::diagram_in_degrees(diagram);
+            let points = diagram.branches.iter().map(|one| one.branch.points.len()).sum();
             Ok(result(case, diagram, seconds, ring_load::AXES, &mut |branch| {
                 let curve = ring_load::curve(&branch);
-                (ring_load::result(case, &branch, 0.0), curve)
+                let mut result = ring_load::result(case, &branch, 0.0);
+                if reported {
+                    result.pictures.states = states::of_ring_load(&problem, &branch, points);
+                }
+                (result, curve)
             }))
         }
         ProblemCase::Catalogue(problem) => {

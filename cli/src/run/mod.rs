@@ -8,11 +8,14 @@ mod form;
 mod general;
 mod map;
 mod ring_load;
+mod states;
 mod sweep;
+mod ways;
 
 pub(crate) use contact::{branch as contact_branch, result as contact_result};
 pub(crate) use cycle::run_cycle;
 pub(crate) use map::run_map;
+pub(crate) use ring_load::AXES as RING_AXES;
 pub(crate) use sweep::{Outcome, run_sweep};
 
 use crate::case::{CatalogueEntry, PathCase, ProblemCase, ResolvedCase};
@@ -141,7 +144,7 @@ pub(crate) fn run_trace(
 ) -> Result<TraceResult, RunError> {
     match &case.problem {
         ProblemCase::Contact(contact) => contact::run(case, contact, observer),
-        ProblemCase::RingLoad(ring) => ring_load::run(case, ring, observer),
+        ProblemCase::RingLoad(ring) => ring_load::run(case, ring, false, observer),
         ProblemCase::Catalogue(problem) => general::run(case, problem, observer),
     }
 }
@@ -156,7 +159,8 @@ pub(crate) fn run_trace_reported(
 ) -> Result<TraceResult, RunError> {
     match &case.problem {
         ProblemCase::Contact(contact) => contact::run_reported(case, contact, observer),
-        _ => run_trace(case, observer),
+        ProblemCase::RingLoad(ring) => ring_load::run(case, ring, true, observer),
+        ProblemCase::Catalogue(_) => run_trace(case, observer),
     }
 }
 

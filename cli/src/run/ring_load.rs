@@ -3,6 +3,7 @@
 
 use super::contact::law;
 use super::form::{StabilityColumns, certified, form};
+use super::states::of_ring_load;
 use super::{Observer, Progress, RunError, listen, settings};
 use crate::case::{PathCase, ResolvedCase, RingLoadCase};
 use crate::output::{Cell, EventRecord, Pictures, Table, TraceResult};
@@ -32,7 +33,7 @@ const SMOOTH: f64 = 5e-3;
 /// Samples along the meridian in the picture of shapes.
 const SAMPLES: usize = 801;
 /// The axes of the pictures.
-pub(super) const AXES: (&str, &str) = ("contact angle α (degrees)", "force 10⁶F/(2πEhR₀)");
+pub(crate) const AXES: (&str, &str) = ("contact angle α (degrees)", "force 10⁶F/(2πEhR₀)");
 
 /// Where and how the branch of a case starts.
 pub(super) struct Start {
@@ -78,10 +79,11 @@ pub(super) fn no_start(case: &ResolvedCase, detail: TraceError) -> RunError {
     }
 }
 
-/// Trace a case.
+/// Trace a case; `reported` also takes the states along the branch, for a report.
 pub(super) fn run(
     case: &ResolvedCase,
     ring: &RingLoadCase,
+    reported: bool,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
     let clock = Instant::now();
@@ -99,6 +101,11 @@ pub(super) fn run(
         title: case.name.clone(),
         diagram: Some((AXES.0.to_owned(), AXES.1.to_owned(), curve(&branch))),
         shapes,
+        states: if reported {
+            of_ring_load(&problem, &branch, branch.points.len())
+        } else {
+            Vec::new()
+        },
         ..Pictures::default()
     };
     Ok(TraceResult { pictures, ..result(case, &branch, seconds) })

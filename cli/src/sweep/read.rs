@@ -8,7 +8,7 @@ use crate::case::error::{CaseError, Complaint};
 use crate::case::reader::{Reader, Section};
 use crate::case::resolve::{plain_name, resolve};
 use crate::case::{
-    CatalogueEntry, LoadError, ProblemCase, ResolvedCase, load as load_case, source,
+    CatalogueEntry, LoadError, ProblemCase, ResolvedCase, SWEEPS, load as load_case, source,
 };
 use crate::closest::closest;
 use std::path::Path;
@@ -55,7 +55,7 @@ pub(crate) struct SweepCase {
     pub(crate) case: Result<ResolvedCase, String>,
 }
 
-/// The sweep in a file. Cases whose values are out of their ranges are kept with the reason; a file
+/// The sweep in a file, or a shipped one by its name. Cases whose values are out of their ranges are kept with the reason; a file
 /// in which every case is such, or in which anything else is wrong, is refused.
 ///
 /// # Errors
@@ -66,7 +66,11 @@ pub(crate) fn load(
     catalogue: &[CatalogueEntry],
 ) -> Result<Sweep, SweepError> {
     let file = path.display().to_string();
-    let text = source::read(path)?;
+    let shipped = SWEEPS.iter().find(|(name, _)| *name == file);
+    let text = match shipped {
+        Some((_, text)) => (*text).to_owned(),
+        None => source::read(path)?,
+    };
     let stem = plain_name(&path.file_stem().unwrap_or_default().to_string_lossy());
     let folder = path.parent().unwrap_or(Path::new(""));
     let tree = document::parse(&file, &text, &[])?;

@@ -2,7 +2,7 @@
 
 use super::read::{SweepError, sweep};
 use super::*;
-use crate::case::{ProblemCase, document};
+use crate::case::{ProblemCase, document, load as load_case};
 use crate::run::catalogue;
 use std::path::Path;
 
@@ -202,4 +202,12 @@ fn values_out_of_range_fail_alone_unless_all_do() {
         &format!("{BASE}[[vary]]\nkey = \"shell.law\"\nvalues = [\"hooke\", \"hoke\"]\n"),
         &["line 13: shell.law = \"hoke\"", "did you mean \"hooke\""],
     );
+}
+
+#[test]
+fn a_shipped_sweep_has_a_name_and_is_no_case() {
+    let phase = load(Path::new("phase"), Shard::ALL, &catalogue()).unwrap();
+    assert_eq!((&phase.plan.name[..], phase.cases.len()), ("phase", 17 * 17));
+    let error = load_case(Path::new("phase"), &[], &catalogue()).unwrap_err().to_string();
+    assert!(error.starts_with("phase, line ") && error.contains("for \"arclen sweep\""), "{error}");
 }

@@ -58,8 +58,7 @@ pub(super) fn attempt(
         .map_err(|detail| no_start(task.case, detail))?;
     // the path's bounds in the problem's unit
     let PathCase { start: from, end, .. } = task.case.path;
-    let radians =
-        PathCase { start: from.to_radians(), end: end.to_radians(), ..task.case.path.clone() };
+    let radians = PathCase { start: from.to_radians(), end: end.to_radians(), ..task.case.path };
     let case = ResolvedCase { path: radians, ..task.case.clone() };
     let task = Task { case: &case, key: task.key.clone(), ..*task };
     let (mut found, refused) = curves(&problem, &base, &task, &mut observer);
