@@ -56,6 +56,13 @@ fn measured_values_are_those_of_other_solvers_and_the_page_needs_nothing_else() 
     let page = fs::read_to_string(out.join("index.html")).unwrap();
     assert_eq!(page.matches("<section id=\"fig").count(), 2);
     assert!(!page.contains("src=\"http") && page.contains("font/ttf;base64"));
+    let table = page.split("<section id=\"claims\">").nth(1).unwrap();
+    let rows: Vec<&str> = table.split("</table>").next().unwrap().split("<tr>").skip(1).collect();
+    let cells = |row: &str| row.matches("<td").count() + row.matches("<th").count();
+    assert!(rows.len() > 5 && rows.iter().all(|row| cells(row) == cells(rows[0])), "{rows:?}");
+    for link in page.split("href=\"").skip(1).map(|rest| rest.split('"').next().unwrap()) {
+        assert!(link.starts_with('#') || out.join(link).is_file(), "{link}");
+    }
 
     let claims = read(&out.join("claims.json"));
     let claims = claims["claims"].as_array().unwrap();

@@ -55,7 +55,7 @@ pub(super) fn report(
 /// The page for a cycle: both ways and the complete branch, of which the states are given.
 ///
 /// # Errors
-/// As [`report`].
+/// As [`report()`].
 pub(super) fn cycle_report(cycle: &CycleResult) -> Result<String, serde_json::Error> {
     let ways = cycle.reported.ways.iter().map(|way| Line {
         label: way.label,

@@ -34,6 +34,7 @@ pub(crate) enum FileError {
 
 /// Name of the table behind a panel.
 pub(super) fn data_name(figure: u32, letter: &str) -> String {
+    let letter = if letter.is_empty() { "a" } else { letter };
     format!("data/fig{figure:02}-{}.csv", letter.replace(", ", "-").replace(' ', "-"))
 }
 
@@ -52,13 +53,8 @@ pub(crate) fn files(
         if pictures {
             drawings.push(figure.sheet.svg());
         }
-        let mut letters: Vec<String> = Vec::new();
         for (panel, spec) in figure.sheet.panels.iter().zip(&figure.manifest.panels) {
-            letters.push(spec.letter.clone());
-            let again = letters.iter().filter(|l| **l == spec.letter).count();
-            let letter =
-                if again > 1 { format!("{}{again}", spec.letter) } else { spec.letter.clone() };
-            let name = data_name(number, &letter);
+            let name = data_name(number, &spec.letter);
             let table = panel_csv(panel);
             let table = table.map_err(|error| FileError::Csv { name: name.clone(), error })?;
             files.push((name, table));
@@ -85,7 +81,9 @@ pub(crate) fn files(
             files.push((format!("fig{number:02}.svg"), svg.clone().into_bytes()));
             files.push((format!("fig{number:02}.png"), png));
         }
-        files.push(("index.html".to_owned(), page(computed, &drawings).into_bytes()));
+        // the page has the titles itself
+        let untitled: Vec<String> = computed.figures.iter().map(|f| f.sheet.untitled()).collect();
+        files.push(("index.html".to_owned(), page(computed, &untitled).into_bytes()));
     }
     Ok(files)
 }

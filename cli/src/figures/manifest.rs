@@ -42,7 +42,7 @@ pub(crate) struct CurveSpec {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PanelSpec {
-    /// Its letter.
+    /// Its letter, unlike those of the other panels; empty for the only one.
     pub(crate) letter: String,
     /// What it shows.
     pub(crate) title: String,
@@ -226,7 +226,8 @@ mod tests {
                 assert!(CASES.iter().any(|(name, _)| *name == curve.case), "{}", curve.case);
                 assert!(m.panels.iter().any(|p| p.curves.contains(&curve.name)), "{}", curve.name);
             }
-            for panel in &m.panels {
+            for (i, panel) in m.panels.iter().enumerate() {
+                assert!(m.panels[..i].iter().all(|p| p.letter != panel.letter), "{number}");
                 assert!(!panel.curves.is_empty());
                 for name in &panel.curves {
                     assert!(m.curves.iter().any(|c| c.name == *name), "{number}: {name}");

@@ -180,8 +180,13 @@ impl Plan {
             .manifests
             .iter()
             .filter(|m| m.panels.iter().any(|panel| panel.ring_load))
-            .filter_map(|m| traced.iter().find(|t| t.figure == m.number))
-            .flat_map(|t| ring::branches(t, stop))
+            .filter_map(|m| Some((m, traced.iter().find(|t| t.figure == m.number)?)))
+            .flat_map(|(m, t)| {
+                let shown = m.panels.iter().filter(|panel| panel.ring_load);
+                let wanted: Vec<f64> =
+                    shown.flat_map(|panel| &panel.states).copied().filter(|d| *d > 0.0).collect();
+                ring::branches(t, &wanted, stop)
+            })
             .collect();
         let claims = claims::of(&traced, &rings);
         let estimates = estimates::table(&traced);

@@ -9,10 +9,13 @@ use std::fmt::Write;
 
 const STYLE: &str = include_str!("page.css");
 
-/// The page as HTML; it needs no other file to be read, and links the data beside it.
+/// The page as HTML, with these drawings; it needs no other file to be read, and links the data
+/// beside it.
 pub(super) fn page(computed: &Computed, drawings: &[String]) -> String {
-    let mut out =
-        String::from("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n");
+    let mut out = String::from(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n",
+    );
     out.push_str("<title>Figures, computed</title>\n<style>\n");
     for (weight, font) in [("normal", FONT), ("bold", BOLD)] {
         let _ = writeln!(
@@ -52,8 +55,8 @@ pub(super) fn page(computed: &Computed, drawings: &[String]) -> String {
         small(&mut out, &m.title);
         out.push_str("</h2>\n");
         // ids of clipping paths are unique in one drawing only
-        out.push_str(&svg.replace("frame-", &format!("f{n}-frame-")));
-        out.push_str("<p>");
+        let svg = svg.replace("frame-", &format!("f{n}-frame-"));
+        let _ = write!(out, "<div class=\"drawing\">{svg}</div><p>");
         small(&mut out, &m.caption);
         out.push_str("</p>\n");
         if !m.notes.is_empty() {
@@ -74,7 +77,8 @@ pub(super) fn page(computed: &Computed, drawings: &[String]) -> String {
         );
         for panel in &m.panels {
             let name = data_name(n, &panel.letter);
-            let _ = write!(out, " <a href=\"{name}\">({})</a>", panel.letter);
+            let shown = if panel.letter.is_empty() { "curves" } else { &panel.letter };
+            let _ = write!(out, " <a href=\"{name}\">({shown})</a>");
         }
         out.push_str(" cases:");
         for traced in &figure.traced {
@@ -90,7 +94,7 @@ fn claims(out: &mut String, claims: &[Claim]) {
     if claims.is_empty() {
         return;
     }
-    out.push_str("<section id=\"claims\"><h2>Claims</h2>\n<table><tr>");
+    out.push_str("<section id=\"claims\"><h2>Claims</h2>\n<div class=\"wide\"><table><tr>");
     for title in
         ["Fig.", "The paper says", "Measured here", "Paper", "Here", "Tolerance", "Verdict", "Why"]
     {
@@ -104,8 +108,8 @@ fn claims(out: &mut String, claims: &[Claim]) {
             Verdict::CannotBeDecided => ("open", "cannot be decided"),
         };
         let _ = write!(out, "<tr><td>{}</td>", claim.figure);
-        for text in [&claim.statement, &number(claim.paper), &number(claim.ours), &claim.tolerance]
-        {
+        let (paper, ours) = (number(claim.paper), number(claim.ours));
+        for text in [&claim.statement, &claim.measured, &paper, &ours, &claim.tolerance] {
             out.push_str("<td>");
             escape(out, text.trim());
             out.push_str("</td>");
@@ -114,7 +118,7 @@ fn claims(out: &mut String, claims: &[Claim]) {
         escape(out, &claim.why);
         out.push_str("</td></tr>\n");
     }
-    out.push_str("</table></section>\n");
+    out.push_str("</table></div></section>\n");
 }
 
 fn estimates(out: &mut String, rows: &[EstimateRow]) {
@@ -122,7 +126,7 @@ fn estimates(out: &mut String, rows: &[EstimateRow]) {
         return;
     }
     out.push_str(
-        "<h3>Moduli that the curves give back</h3>\n<table><tr><th>Curve</th><th>Combination</th>\
+        "<h3>Moduli that the curves give back</h3>\n<div class=\"wide\"><table><tr><th>Curve</th><th>Combination</th>\
          <th>Formulas</th><th>χ (N/m): found</th><th>true</th><th>k<sub>b</sub> (N m): found</th>\
          <th>true</th><th>E (MPa): found</th><th>true</th><th>h (nm): found</th><th>true</th>\
          <th>Parts of the curve</th></tr>\n",
@@ -144,7 +148,7 @@ fn estimates(out: &mut String, rows: &[EstimateRow]) {
         }
         out.push_str("</tr>\n");
     }
-    out.push_str("</table>\n");
+    out.push_str("</table></div>\n");
 }
 
 fn number(value: Option<f64>) -> String {

@@ -27,12 +27,20 @@ pub(super) fn panels(manifest: &Manifest, traced: &[&Traced], rings: &[RingBranc
             }
         }
     }
+    let mut labels: Vec<&str> = Vec::new();
+    for curve in &manifest.curves {
+        if !labels.contains(&&*curve.label) {
+            labels.push(&curve.label);
+        }
+    }
     let draw = |spec: &PanelSpec| {
+        // equal labels have equal colours in all panels
+        let place = |t: &Traced| labels.iter().position(|label| *label == t.label).unwrap_or(0);
         let curves: Vec<(usize, &Traced)> = spec
             .curves
             .iter()
-            .enumerate()
-            .filter_map(|(i, name)| Some((i, *traced.iter().find(|t| t.name == *name)?)))
+            .filter_map(|name| traced.iter().find(|t| t.name == *name))
+            .map(|t| (place(t), *t))
             .collect();
         let mut panel = match spec.show {
             Show::Force => forces(spec, &curves),
@@ -41,9 +49,17 @@ pub(super) fn panels(manifest: &Manifest, traced: &[&Traced], rings: &[RingBranc
             Show::Pressure => pressure(spec, &states(spec, &curves, &keys)),
         };
         if spec.ring_load {
-            panel.lines.extend(rings.iter().enumerate().map(|(i, ring)| ring_line(spec, ring, i)));
+            match spec.show {
+                Show::Shapes => panel.lines.extend(rings.iter().flat_map(ring_shapes)),
+                _ => panel
+                    .lines
+                    .extend(rings.iter().enumerate().map(|(i, ring)| ring_line(spec, ring, i))),
+            }
         }
-        panel.title = format!("({}) {}", spec.letter, spec.title);
+        panel.title = match &*spec.letter {
+            "" => spec.title.clone(),
+            letter => format!("({letter}) {}", spec.title),
+        };
         panel.x_range = spec.x_range.or(panel.x_range);
         panel.y_range = spec.y_range.or(panel.y_range);
         panel
@@ -151,6 +167,26 @@ fn ring_line(spec: &PanelSpec, ring: &RingBranch, at: usize) -> PanelLine {
     }
 }
 
+/// Meridians under the ring load, to lie over those between plates.
+fn ring_shapes(ring: &RingBranch) -> impl Iterator<Item = PanelLine> {
+    ring.shapes.iter().map(|shape| PanelLine {
+        label: "ring load".to_owned(),
+        ink: Ink::Place(0),
+        pen: Pen::Law,
+        right: false,
+        curve: Curve {
+            x: mirrored(&shape.sigma, |s| -s),
+            y: mirrored(&shape.z, |z| z),
+            ..Curve::default()
+        },
+    })
+}
+
+/// From the left equator over the pole to the right one.
+fn mirrored(half: &[f64], left: fn(f64) -> f64) -> Vec<f64> {
+    half.iter().rev().map(|at| left(*at)).chain(half.iter().skip(1).copied()).collect()
+}
+
 fn law_line(law: Law, spec: &PanelSpec, traced: &Traced, end: f64, several: bool) -> PanelLine {
     let x: Vec<f64> = (0..=LAW).map(|i| end * i as f64 / LAW as f64).collect();
     let y = x.iter().map(|x| {
@@ -204,7 +240,7 @@ fn energies(spec: &PanelSpec, curves: &[(usize, &Traced)]) -> Panel {
     Panel {
         x: x_title(spec.x),
         y: "energy W/(χ R_{0}^{2})".to_owned(),
-        right: spec.right.map(|part| format!("energy, {}", part.name())),
+        right: spec.right.map(|part| format!("{} energy W/(χ R_{{0}}^{{2}})", part.name())),
         lines,
         ..Panel::default()
     }
@@ -258,10 +294,7 @@ fn shapes(spec: &PanelSpec, shown: &[Shown<'_>]) -> Panel {
     for Shown { traced, state, place, label } in shown {
         let Some(profile) = traced.profile(state, SAMPLES) else { continue };
         wide = profile.sigma.iter().fold(wide, |w, s| w.max(*s));
-        // from the left equator over the pole to the right one
-        let mirrored = profile.sigma.iter().rev().map(|s| -s);
-        let x: Vec<f64> = mirrored.chain(profile.sigma.iter().skip(1).copied()).collect();
-        let y: Vec<f64> = profile.z.iter().rev().chain(profile.z.iter().skip(1)).copied().collect();
+        let (x, y) = (mirrored(&profile.sigma, |s| -s), mirrored(&profile.z, |z| z));
         let unstable = vec![state.unstable; x.len()];
         let line = |label: &str, pen, curve| PanelLine {
             label: label.to_owned(),

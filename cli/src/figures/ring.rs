@@ -6,7 +6,7 @@
 
 use super::curve::Traced;
 use continuation::{Branch, NewtonSettings, Settings, Tracer, Watch, both_ways, newton};
-use shell_contact::ring_load::{DEFAULT_GRADING, RingGroups, RingLoadProblem};
+use shell_contact::ring_load::{DEFAULT_GRADING, RingGroups, RingLoadProblem, RingProfile};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -22,6 +22,8 @@ const SHARES: [f64; 4] = [0.6, 0.5, 0.8, 1.1];
 const MOMENT_AT: usize = shell_contact::ring_load::parameter::MOMENT.0;
 /// A pole this far above the ring, in thicknesses, is where the plate is: the flat branch ends.
 const ABOVE: f64 = 0.05;
+/// Samples along a meridian.
+const SAMPLES: usize = 801;
 /// Longest step, an arclength: longer ones hop over the gap of 0.003 between the branches.
 const STEP: f64 = 0.0005;
 
@@ -32,6 +34,8 @@ pub(crate) struct RingBranch {
     pub(crate) label: &'static str,
     /// Its points.
     pub(crate) points: Vec<RingPoint>,
+    /// Meridians of stable states that were asked for.
+    pub(crate) shapes: Vec<RingProfile>,
 }
 
 /// A point of it.
@@ -51,8 +55,9 @@ pub(crate) struct RingPoint {
     pub(crate) unstable: bool,
 }
 
-/// Flat and buckled branch of the shell of a contact case; what cannot be followed is left out.
-pub(super) fn branches(traced: &Traced, stop: &AtomicBool) -> Vec<RingBranch> {
+/// Flat and buckled branch of the shell of a contact case, with the meridians at deflections `wanted`,
+/// in `h`; what cannot be followed is left out.
+pub(super) fn branches(traced: &Traced, wanted: &[f64], stop: &AtomicBool) -> Vec<RingBranch> {
     let g = traced.problem.groups();
     let groups =
         RingGroups { bending: g.bending, pressure: g.pressure, gas_exponent: g.gas_exponent };
@@ -65,15 +70,40 @@ pub(super) fn branches(traced: &Traced, stop: &AtomicBool) -> Vec<RingBranch> {
     ];
     found
         .into_iter()
-        .filter_map(|(label, points)| Some(RingBranch { label, points: points? }))
+        .filter_map(|(label, branch)| {
+            let branch = branch?;
+            let points = points(&branch);
+            let shape = |d: &f64| shape(&problem, &branch, &points, *d);
+            let shapes = wanted.iter().filter_map(shape).collect();
+            Some(RingBranch { label, points, shapes })
+        })
         .collect()
+}
+
+/// Meridian of the stable state at a deflection, between the points about it.
+fn shape(
+    problem: &RingLoadProblem,
+    branch: &Branch,
+    points: &[RingPoint],
+    deflection: f64,
+) -> Option<RingProfile> {
+    let at = points.windows(2).position(|pair| {
+        let crosses = (pair[0].deflection - deflection) * (pair[1].deflection - deflection) <= 0.0;
+        crosses && pair.iter().all(|q| !q.unstable)
+    })?;
+    let share =
+        (deflection - points[at].deflection) / (points[at + 1].deflection - points[at].deflection);
+    let (a, b) = (&branch.points[at], &branch.points[at + 1]);
+    let u: Vec<f64> = a.u.iter().zip(&b.u).map(|(a, b)| a + share * (b - a)).collect();
+    let p = problem.parameters_at(a.p + share * (b.p - a.p));
+    problem.profile(&u, &p, SAMPLES).ok()
 }
 
 fn go_on(stop: &AtomicBool) -> ControlFlow<()> {
     if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
-fn flat(problem: &RingLoadProblem, stop: &AtomicBool) -> Option<Vec<RingPoint>> {
+fn flat(problem: &RingLoadProblem, stop: &AtomicBool) -> Option<Branch> {
     let settings = Settings {
         domain: Some(ANGLES),
         increasing: Some(true),
@@ -83,10 +113,10 @@ fn flat(problem: &RingLoadProblem, stop: &AtomicBool) -> Option<Vec<RingPoint>> 
     let (u, p) = (problem.initial_state(), problem.parameters_at(ANGLES.0));
     let above = Watch::stop_at("pole_over_h", ABOVE);
     let tracer = Tracer::new(problem, "alpha", &u, &p, settings).ok()?.watching(&[above]).ok()?;
-    Some(points(&tracer.run(&mut |_| go_on(stop))))
+    Some(tracer.run(&mut |_| go_on(stop)))
 }
 
-fn buckled(problem: &RingLoadProblem, stop: &AtomicBool) -> Option<Vec<RingPoint>> {
+fn buckled(problem: &RingLoadProblem, stop: &AtomicBool) -> Option<Branch> {
     let moment = MOMENT * problem.groups().bending;
     let lead = |u: &[f64], p: &[f64], parameter, target| {
         let settings = Settings { target: Some(target), ..Settings::default() };
@@ -111,8 +141,7 @@ fn buckled(problem: &RingLoadProblem, stop: &AtomicBool) -> Option<Vec<RingPoint
         (pole < -ABOVE).then_some(u)
     })?;
     let settings = Settings { domain: Some(ANGLES), max_step: Some(STEP), ..Settings::default() };
-    let branch = both_ways(problem, "alpha", &dimple, &p, settings, &[], &mut |_| go_on(stop));
-    Some(points(&branch.ok()?))
+    both_ways(problem, "alpha", &dimple, &p, settings, &[], &mut |_| go_on(stop)).ok()
 }
 
 fn points(branch: &Branch) -> Vec<RingPoint> {
@@ -142,7 +171,7 @@ mod tests {
         let shell = Shell { law: Law::Hooke, poisson: 0.3 };
         let problem = RingLoadProblem::new(&shell, &groups, 100, DEFAULT_GRADING).unwrap();
         let stop = AtomicBool::new(false);
-        let flat = flat(&problem, &stop).unwrap();
+        let flat = points(&flat(&problem, &stop).unwrap());
         assert!(flat.iter().all(|q| !q.unstable || q.pole > 0.0));
         let near = |points: &[RingPoint], alpha: f64| {
             let at = points
@@ -151,10 +180,17 @@ mod tests {
             at.unwrap().force
         };
         assert!((near(&flat, 7.0) / 79.17 - 1.0).abs() < 0.02);
-        let buckled = buckled(&problem, &stop).unwrap();
+        let branch = buckled(&problem, &stop).unwrap();
+        let buckled = points(&branch);
         let least = buckled.iter().min_by(|a, b| a.alpha.total_cmp(&b.alpha)).unwrap();
         assert!((least.alpha - 8.789).abs() < 0.02, "{least:?}");
         let deep = buckled.iter().max_by(|a, b| (-a.pole).total_cmp(&-b.pole)).unwrap();
         assert!(deep.pole < -9.0 && !deep.unstable, "{deep:?}");
+
+        // the dimple of 4 h: the rim is 4 h below the undeformed pole, the pole below the rim
+        let shape = shape(&problem, &branch, &buckled, 4.0).unwrap();
+        let highest = shape.z.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        assert!((highest - 0.96).abs() < 1e-3, "{highest}");
+        assert!(shape.z[0] < 0.94, "{}", shape.z[0]);
     }
 }

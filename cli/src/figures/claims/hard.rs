@@ -183,10 +183,35 @@ pub(super) fn bending(of: &Branches<'_>) -> Vec<Claim> {
         .near(1.0, same, 0.02),
         row(
             "k_b = 3e-3 eliminates the post-buckling regime",
-            "least slope over the largest one, to Δ/R0 = 0.35",
+            "least slope over the largest one before it, to Δ/R0 = 0.35",
             "the slope never falls",
         )
         .above(0.5, stiff),
+    ]
+}
+
+/// Fig. 11.
+pub(super) fn adhesion(of: &Branches<'_>) -> Vec<Claim> {
+    let row = |statement, measured, why| Row { figure: 11, statement, measured, why };
+    let weak = of.get("a-weak").and_then(knee);
+    let strong = of.get("a-strong").and_then(|t| fold(t, 0));
+    let ratio = strong.zip(weak).map(|(s, w)| (s.0 / w.0, s.1 / w.1));
+    let fold_or_knee = "at the fold with strong adhesion over that at the knee with weak";
+    vec![
+        row(
+            "strong adhesion postpones buckling to higher deformations (k_b = 3e-5)",
+            &format!("deformation {fold_or_knee}"),
+            "the film holds the cap at the plate",
+        )
+        .above(1.0, ratio.map(|r| r.0)),
+        row("… and to higher forces", &format!("force {fold_or_knee}"), "both in √(χk_b)")
+            .above(1.0, ratio.map(|r| r.1)),
+        row(
+            "… and bypasses it for the thicker shell (k_b = 3e-4)",
+            "least slope over the largest one before it, to Δ/R0 = 0.35",
+            "neither a fold nor a knee",
+        )
+        .above(0.5, of.get("b-strong").and_then(|t| least_slope(t, 0.35))),
     ]
 }
 

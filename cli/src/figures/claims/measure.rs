@@ -33,18 +33,18 @@ pub(super) fn knee(traced: &Traced) -> Option<(f64, f64)> {
     None
 }
 
-/// Least slope after the largest one, over it; `to` bounds the deformation.
+/// Least slope, each over the largest one before it; `to` bounds the deformation.
 pub(super) fn least_slope(traced: &Traced, to: f64) -> Option<f64> {
     let points = compression(traced);
-    let (mut largest, mut least) = (0.0_f64, f64::INFINITY);
+    let (mut largest, mut least) = (0.0_f64, 1.0_f64);
     for pair in points.windows(2).filter(|pair| pair[1].0 <= to) {
         let slope = (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
-        if slope > largest {
-            (largest, least) = (slope, slope);
+        largest = largest.max(slope);
+        if largest > 0.0 {
+            least = least.min(slope / largest);
         }
-        least = least.min(slope);
     }
-    (largest > 0.0).then(|| least / largest)
+    (largest > 0.0).then_some(least)
 }
 
 /// Reduced force at a deformation, the first time.
@@ -61,6 +61,13 @@ pub(super) fn slope(traced: &Traced, from: f64, to: f64) -> Option<f64> {
 pub(super) fn power(traced: &Traced, d: f64) -> Option<f64> {
     let (low, high) = (force(traced, 0.97 * d)?, force(traced, 1.03 * d)?);
     Some((high / low).ln() / (1.03_f64 / 0.97).ln())
+}
+
+/// Power of the force beyond the linear one between two deformations.
+pub(super) fn power_beyond(traced: &Traced, from: f64, to: f64) -> Option<f64> {
+    let first = slope(traced, 0.0, 0.02)?;
+    let beyond = |d: f64| Some(force(traced, d)? - first * d);
+    Some((beyond(to)? / beyond(from)?).ln() / (to / from).ln())
 }
 
 /// Where the slope has become `factor` times the first one.

@@ -135,12 +135,15 @@ pub(super) fn of(traced: &[Traced], rings: &[RingBranch]) -> Vec<Claim> {
         (7, soft::lipid),
         (9, soft::estimates),
         (10, hard::bending),
+        (11, hard::adhesion),
         (12, hard::strong_adhesion),
         (13, hard::thick_shell),
         (14, soft::bending),
         (15, soft::adhesion),
+        (16, soft::stronger_adhesion),
         (17, soft::strongest_adhesion),
         (18, soft::surface_tension),
+        (19, soft::weak_tension),
         (20, soft::strong_tension),
     ] {
         if traced.iter().any(|t| t.figure == figure) {

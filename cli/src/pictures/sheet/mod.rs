@@ -111,6 +111,15 @@ const HEAD: f64 = 64.0;
 impl Sheet {
     /// The figure as SVG.
     pub(crate) fn svg(&self) -> String {
+        self.drawing(&self.title, &self.subtitle)
+    }
+
+    /// The panels alone, for a page that has the title.
+    pub(crate) fn untitled(&self) -> String {
+        self.drawing("", "")
+    }
+
+    fn drawing(&self, title: &str, subtitle: &str) -> String {
         let layouts: Vec<Layout> =
             self.panels.iter().enumerate().map(|(i, p)| Layout::of(p, i)).collect();
         let columns = if layouts.len() > 1 { 2 } else { 1 };
@@ -118,11 +127,11 @@ impl Sheet {
         for (i, layout) in layouts.iter().enumerate() {
             widths[i % columns] = widths[i % columns].max(layout.width);
         }
-        let header = text::width(&self.title, 20.0).max(text::width(&self.subtitle, 13.0));
+        let header = text::width(title, 20.0).max(text::width(subtitle, 13.0));
         let width = (widths.iter().sum::<f64>() + MARGIN * (columns as f64 + 1.0))
             .max(header + 2.0 * MARGIN);
         let mut body = String::new();
-        let mut top = HEAD;
+        let mut top = if title.is_empty() { MARGIN } else { HEAD };
         for row in layouts.chunks(columns) {
             let mut left = MARGIN;
             for (layout, column) in row.iter().zip(&widths) {
@@ -138,8 +147,8 @@ impl Sheet {
              viewBox=\"0 0 {width:.0} {top:.0}\" font-family=\"{FAMILY}\" stroke-linejoin=\"round\" \
              fill=\"none\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
         );
-        text::put(&mut svg, &self.title, [MARGIN, 28.0], &text::Style::title());
-        text::put(&mut svg, &self.subtitle, [MARGIN, 50.0], &text::Style::small());
+        text::put(&mut svg, title, [MARGIN, 28.0], &text::Style::title());
+        text::put(&mut svg, subtitle, [MARGIN, 50.0], &text::Style::small());
         svg.push_str(&body);
         svg.push_str("</svg>\n");
         svg

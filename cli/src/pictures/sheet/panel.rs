@@ -186,11 +186,13 @@ impl<'p> Layout<'p> {
     }
 }
 
-/// Labels with the line that is their sample; none for the note on dashes.
+/// Labels, each once, with the line that is their sample; none for the note on dashes.
 fn entries<'p>(
     panel: &'p Panel,
 ) -> impl Iterator<Item = (&'p str, Option<&'p PanelLine>)> + use<'p> {
-    let lines = panel.lines.iter().filter(|l| !l.label.is_empty());
+    let first = |(i, l): &(usize, &PanelLine)| panel.lines[..*i].iter().all(|k| k.label != l.label);
+    let lines = panel.lines.iter().enumerate().filter(first).map(|(_, l)| l);
+    let lines = lines.filter(|l| !l.label.is_empty());
     let inside = |range: Option<[f64; 2]>, at: f64| range.is_none_or(|[a, b]| a <= at && at <= b);
     let seen = |l: &PanelLine| {
         let curve = &l.curve;
