@@ -17,7 +17,7 @@ const STATES: usize = 12;
 const OFFSETS: [f64; 3] = [4.0, 20.0, 1.0];
 /// How far from a near-bifurcation its other branch is sought, in units of the larger of the natural
 /// amplitude and the distance of the known branch.
-const BESIDE: f64 = 12.0;
+const BESIDE: f64 = 4.0;
 /// The shortest and the longest one, in parts of the parameter's range.
 const SPAN: (f64, f64) = (1e-4, 1.0);
 
