@@ -4,7 +4,6 @@ use crate::case::Override;
 use crate::sweep::Shard;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
-use std::num::NonZero;
 use std::path::PathBuf;
 
 /// Bifurcation diagrams: branches of solutions followed around their folds.
@@ -72,6 +71,11 @@ pub(crate) struct CaseArguments {
 }
 
 impl CaseArguments {
+    /// The files that are read.
+    pub(crate) fn inputs(&self) -> [PathBuf; 1] {
+        [self.case.clone()]
+    }
+
     /// The overrides, in the order in which they are applied.
     pub(crate) fn overrides(&self) -> Vec<Override> {
         let set = self.set.iter().map(|text| Override::set(text));
@@ -178,9 +182,9 @@ pub(crate) struct SweepArguments {
     /// A sweep file, a case file that also says which keys vary; or a name from "arclen list"
     #[arg(value_name = "SWEEP.toml|NAME")]
     pub(crate) sweep: PathBuf,
-    /// Number of threads [default: all cores]
-    #[arg(long, value_name = "N")]
-    pub(crate) jobs: Option<NonZero<usize>>,
+    /// Number of threads, at most 1024 [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) jobs: Option<u16>,
     /// Compute only the k-th of n shares of the cases, for the jobs of a cluster; "arclen merge"
     /// unites them
     #[arg(long, value_name = "k/n", default_value_t = Shard::ALL, hide_default_value = true)]

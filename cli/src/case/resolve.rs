@@ -49,6 +49,10 @@ const HOMES: &[(&str, &[&str])] = &[
 const GAS_EXPONENT: f64 = 1.07;
 const ELEMENTS: ElementRange = ElementRange { default: 400, least: 8, most: 100_000 };
 const MAX_POINTS: usize = 5000;
+/// Steps shorter than this part of the way are lost in the rounding of the parameter.
+const SHORTEST: f64 = 1e-16;
+/// Names name folders and files; systems allow 255 bytes, of which suffixes take some.
+const LONGEST_NAME: usize = 200;
 
 const POISSON: Allowed =
     Allowed { holds: |x| x > -1.0 && x <= 0.5, words: "greater than -1 and at most 0.5" };
@@ -101,7 +105,7 @@ impl<'a> Resolver<'a> {
         }
         let name = match self.root.get("name") {
             None => Some(default_name.to_string()),
-            Some(_) => self.own_name(),
+            Some(_) => own_name(self.reader, self.root).map(str::to_string),
         };
         let known: Vec<&str> = ["contact", "ring-load"]
             .into_iter()
@@ -137,18 +141,6 @@ impl<'a> Resolver<'a> {
             map: map?,
         };
         Some(LoadedCase { case, notes: self.notes })
-    }
-
-    /// The name that a case gives itself; it names a folder.
-    fn own_name(&self) -> Option<String> {
-        let text = self.reader.text(self.root, "name")?;
-        if text == plain_name(text) {
-            return Some(text.to_string());
-        }
-        let node = self.root.get("name")?;
-        let allowed = "a name fit for a folder: no slashes, no dot at its start".to_string();
-        self.reader.refuse(self.root, "name", node, Complaint::OutOfRange { allowed });
-        None
     }
 
     /// A table whose keys are all known.
@@ -466,6 +458,17 @@ impl<'a> Resolver<'a> {
             let allowed = format!("different from path.end, which is {end:?} by default");
             self.reader.refuse(section, "start", node, Complaint::OutOfRange { allowed });
         }
+        if let (Some(start), Some(end), Some(step)) = (start, end, max_step)
+            && let Some(node) = section.get("max_step")
+        {
+            let least = SHORTEST * (end - start).abs();
+            if step < least {
+                let allowed = format!(
+                    "at least {least:.1e}, {SHORTEST:.0e} of the way from path.start to path.end"
+                );
+                self.reader.refuse(section, "max_step", node, Complaint::OutOfRange { allowed });
+            }
+        }
         if let (Some(low), Some(high), Some(node)) = (min_step, max_step, section.get("min_step"))
             && low > high
         {
@@ -578,9 +581,26 @@ impl<'a> Resolver<'a> {
     }
 }
 
+/// The key `name` of a file, if it is there and fit for a folder.
+pub(crate) fn own_name<'a>(reader: &Reader, root: Section<'a>) -> Option<&'a str> {
+    let text = reader.text(root, "name")?;
+    if text == plain_name(text) {
+        return Some(text);
+    }
+    let node = root.get("name")?;
+    let allowed = format!(
+        "a name fit for a folder: no slashes, no dot at its start, at most {LONGEST_NAME} bytes"
+    );
+    reader.refuse(root, "name", node, Complaint::OutOfRange { allowed });
+    None
+}
+
 /// The nearest name that is fit for a folder.
 pub(crate) fn plain_name(text: &str) -> String {
     let awkward = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':');
-    let name = text.trim().trim_start_matches('.').replace(awkward, "_");
+    let mut name = text.trim().trim_start_matches('.').replace(awkward, "_");
+    while name.len() > LONGEST_NAME {
+        name.pop();
+    }
     if name.is_empty() { "case".to_string() } else { name }
 }

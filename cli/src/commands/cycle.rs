@@ -24,7 +24,7 @@ pub(super) fn cycle(arguments: &CycleArguments) -> Exit {
             Err(exit) => return exit,
         };
     let names = [CYCLE, PATH, BRANCH, CASE, REPORT, pictures::LOOP];
-    let folder = match arguments.output.folder(&case.name, &names) {
+    let folder = match arguments.output.folder(&case.name, &names, &arguments.case.inputs()) {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };

@@ -17,10 +17,19 @@ impl OutputArguments {
         }
     }
 
-    /// The output folder for these files, checked before the work starts.
-    pub(super) fn folder(&self, case: &str, names: &[&str]) -> Result<Option<Folder>, Exit> {
-        let place = self.place(case);
-        place.map(|path| Folder::check(&path, names)).transpose().map_err(|error| {
+    /// The output folder for these files, checked before the work starts; none of them may be one of
+    /// `inputs`. A name may have a `*` for a number.
+    pub(super) fn folder(
+        &self,
+        case: &str,
+        names: &[&str],
+        inputs: &[PathBuf],
+    ) -> Result<Option<Folder>, Exit> {
+        let checked = self.place(case).map(|path| {
+            let folder = Folder::check(&path, names)?;
+            folder.spare(inputs, names).map(|()| folder)
+        });
+        checked.transpose().map_err(|error| {
             terminal::error(&error);
             Exit::BadInput
         })

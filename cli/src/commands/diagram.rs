@@ -15,6 +15,7 @@ use std::path::Path;
 
 const DIAGRAM: &str = "diagram.json";
 const CASE: &str = "case.toml";
+const TABLES: &str = "branch-*.csv";
 
 /// Explore the diagram of a case.
 pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
@@ -27,8 +28,11 @@ pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
         terminal::error(error);
         Exit::BadInput
     };
-    let names = [DIAGRAM, CASE, pictures::DIAGRAM, REPORT];
-    let folder = match arguments.output.folder(&case.name, &names) {
+    let names: Vec<&str> = [DIAGRAM, CASE, pictures::DIAGRAM, REPORT, TABLES]
+        .into_iter()
+        .chain(Checkpoint::NAMES)
+        .collect();
+    let folder = match arguments.output.folder(&case.name, &names, &arguments.case.inputs()) {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };

@@ -18,7 +18,8 @@ pub(super) fn figure(arguments: &FigureArguments) -> Exit {
         Ok(plan) => plan,
         Err(error) => return refuse(&error),
     };
-    let folder = match arguments.output.folder("figures", &[JSON, "index.html", "claims.json"]) {
+    let folder = match arguments.output.folder("figures", &[JSON, "index.html", "claims.json"], &[])
+    {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };

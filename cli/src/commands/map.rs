@@ -20,7 +20,8 @@ pub(super) fn map(arguments: &MapArguments) -> Exit {
             Ok(loaded) => loaded.case,
             Err(exit) => return exit,
         };
-    let folder = match arguments.output.folder(&case.name, &[MAP, CASE, pictures::MAP]) {
+    let names = [MAP, CASE, pictures::MAP, "fold-*.csv", "hopf-*.csv", "branch-point-*.csv"];
+    let folder = match arguments.output.folder(&case.name, &names, &arguments.case.inputs()) {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };

@@ -7,16 +7,23 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 const LENGTH: u64 = 1000;
 
-/// A flag that Ctrl-C sets.
-pub(super) fn stop_on_ctrl_c() -> Arc<AtomicBool> {
+/// Signals that come closer than this are one wish: a terminal that closes and a system that shuts
+/// down send several.
+const ONE_WISH: Duration = Duration::from_millis(500);
+
+/// A flag that Ctrl-C sets, and so do SIGTERM and SIGHUP.
+pub(super) fn stop_on_signals() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let heard = Arc::clone(&stop);
-    // the second Ctrl-C does not wait for the current step
+    let mut first: Option<Instant> = None;
+    // the second wish does not wait for the current step
     let handler = move || {
-        if heard.swap(true, Ordering::SeqCst) {
+        heard.store(true, Ordering::SeqCst);
+        if first.get_or_insert_with(Instant::now).elapsed() > ONE_WISH {
             std::process::exit(130);
         }
     };
@@ -26,7 +33,7 @@ pub(super) fn stop_on_ctrl_c() -> Arc<AtomicBool> {
     stop
 }
 
-/// Shows progress and asks for a stop after Ctrl-C.
+/// Shows progress and asks for a stop after a signal.
 pub(super) struct Observer {
     bar: Option<ProgressBar>,
     path: Option<PathCase>,
@@ -37,7 +44,7 @@ pub(super) struct Observer {
 impl Observer {
     /// An observer; a quiet one, or one whom nobody watches, shows nothing.
     pub(super) fn new(path: Option<PathCase>, quiet: bool) -> Self {
-        let stop = stop_on_ctrl_c();
+        let stop = stop_on_signals();
         let bar = (!quiet && terminal::watched()).then(|| {
             let bar = ProgressBar::new(LENGTH);
             // how far a diagram is from its end nobody knows

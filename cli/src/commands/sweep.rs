@@ -1,7 +1,7 @@
 //! `arclen sweep` and `arclen merge`: parameter studies, and the union of their shards.
 
 use super::delivery::Made;
-use super::progress::stop_on_ctrl_c;
+use super::progress::stop_on_signals;
 use crate::arguments::{MergeArguments, OutputArguments, SweepArguments};
 use crate::exit::Exit;
 use crate::output::{
@@ -13,7 +13,6 @@ use crate::sweep::{Plan, Shard, Sweep, SweepCase, load};
 use crate::{pictures, terminal};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io;
-use std::num::NonZero;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
@@ -21,7 +20,8 @@ const JSON: &str = "sweep.json";
 const CURVES: &str = "curves.csv";
 const EVENTS: &str = "events.csv";
 const PHASE: &str = "phase.csv";
-const NAMES: [&str; 5] = [JSON, CURVES, EVENTS, PHASE, pictures::PHASE];
+const NAMES: [&str; 7] =
+    [JSON, CURVES, EVENTS, PHASE, pictures::PHASE, "cases/plan.json", "cases/case-*.cbor"];
 
 /// Trace all cases of a sweep.
 pub(super) fn sweep(arguments: &SweepArguments) -> Exit {
@@ -31,7 +31,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Exit {
         Err(error) => return refuse(&error),
     };
     let place = format!("{}{}", sweep.plan.name, arguments.shard.suffix());
-    let folder = match arguments.output.folder(&place, &NAMES) {
+    let folder = match arguments.output.folder(&place, &NAMES, &sweep.inputs) {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
@@ -85,7 +85,7 @@ pub(super) fn merge(arguments: &MergeArguments) -> Exit {
     }
     let Some((_, first)) = stores.first() else { return Exit::BadInput };
     let plan = Plan { shard: Shard::ALL, ..first.plan().clone() };
-    let folder = match arguments.output.folder(&plan.name, &NAMES) {
+    let folder = match arguments.output.folder(&plan.name, &NAMES, &[]) {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
@@ -123,7 +123,7 @@ fn compute(
     store: Option<&Store>,
     kept: Vec<Kept>,
 ) -> Result<Run, Exit> {
-    let stop = stop_on_ctrl_c();
+    let stop = stop_on_signals();
     let have: Vec<usize> = kept.iter().map(|case| case.record.case).collect();
     let to_do: Vec<&SweepCase> =
         sweep.cases.iter().filter(|case| have.binary_search(&case.index).is_err()).collect();
@@ -151,7 +151,7 @@ fn compute(
             bar.inc(1);
         }
     };
-    let jobs = arguments.jobs.map_or(0, NonZero::get);
+    let jobs = arguments.jobs.map_or(0, usize::from);
     if let Err(error) = run_sweep(&to_do, jobs, &stop, &done) {
         terminal::error(&format!("--jobs {jobs}: the threads cannot be had: {error}"));
         return Err(Exit::BadInput);

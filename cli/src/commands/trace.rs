@@ -43,7 +43,7 @@ pub(super) fn trace(arguments: &TraceArguments) -> Exit {
 fn folder(arguments: &TraceArguments, case: &str) -> Result<Option<Folder>, Exit> {
     let names: Vec<&str> =
         [TABLE, EVENTS, CASE, REPORT].into_iter().chain(pictures::NAMES).collect();
-    arguments.output.folder(case, &names)
+    arguments.output.folder(case, &names, &arguments.case.inputs())
 }
 
 /// Write files, JSON and summary.

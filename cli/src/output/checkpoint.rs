@@ -60,6 +60,10 @@ pub(crate) struct Checkpoint {
 }
 
 impl Checkpoint {
+    /// The files of the checkpoint, in the folder of the results.
+    pub(crate) const NAMES: [&str; 3] =
+        ["unfinished/case.toml", "unfinished/part.cbor", "unfinished/branch-*.cbor"];
+
     /// The checkpoint in the folder `out`, of a case whose text is `case`. Nothing is created.
     ///
     /// # Errors

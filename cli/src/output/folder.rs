@@ -5,6 +5,9 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
+/// Longest name of a file or folder, in bytes, as nearly all systems have it.
+const LONGEST: usize = 255;
+
 /// A folder into which results can be written as far as can be known beforehand.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Folder {
@@ -44,6 +47,27 @@ pub(crate) enum FolderError {
         /// The file's name.
         name: String,
     },
+    /// A file that the work starts from, in the place of an output file.
+    #[error(
+        "--out {}: writing {name} there would overwrite {}, from which this starts; give another \
+         folder for the results", .path.display(), .input.display()
+    )]
+    Input {
+        /// The folder asked for.
+        path: PathBuf,
+        /// The output file's name.
+        name: String,
+        /// The file that would be lost.
+        input: PathBuf,
+    },
+    /// A name that no system takes.
+    #[error("--out {}: a name of {length} bytes is too long for a folder; give one of at most {LONGEST}", .path.display())]
+    LongName {
+        /// The folder asked for.
+        path: PathBuf,
+        /// The name's length.
+        length: usize,
+    },
     /// Writing failed after the work was done.
     #[error("{}: cannot be written: {source}", .path.display())]
     Write {
@@ -64,6 +88,10 @@ impl Folder {
         if path.as_os_str().is_empty() {
             return Err(FolderError::Empty);
         }
+        let lengths = path.components().map(|part| part.as_os_str().len());
+        if let Some(length) = lengths.max().filter(|length| *length > LONGEST) {
+            return Err(FolderError::LongName { path: path.to_path_buf(), length });
+        }
         let part = nearest_existing(path)?;
         let not_writable = |source| FolderError::NotWritable {
             path: path.to_path_buf(),
@@ -78,6 +106,33 @@ impl Folder {
             }
         }
         Ok(Folder { path: path.to_path_buf() })
+    }
+
+    /// Check that none of the files `names` is one of `inputs`, through whatever links and whatever
+    /// way it is reached. A name may have a `*` for a number.
+    ///
+    /// # Errors
+    /// When one of them is.
+    pub(crate) fn spare(&self, inputs: &[PathBuf], names: &[&str]) -> Result<(), FolderError> {
+        for input in inputs {
+            let Ok(known) = identity(input) else { continue };
+            let is_input = |path: &Path| identity(path).is_ok_and(|found| found == known);
+            let found = names.iter().find_map(|name| {
+                let (folder, name) = match name.rsplit_once('/') {
+                    Some((folder, name)) => (self.path.join(folder), name),
+                    None => (self.path.clone(), *name),
+                };
+                let mut files = numbered(&folder, name);
+                files.push(folder.join(name));
+                files.into_iter().find(|file| is_input(file))
+            });
+            if let Some(file) = found {
+                let name = file.strip_prefix(&self.path).unwrap_or(&file).display().to_string();
+                let (path, input) = (self.path.clone(), input.clone());
+                return Err(FolderError::Input { path, name, input });
+            }
+        }
+        Ok(())
     }
 
     /// Where it is.
@@ -155,6 +210,33 @@ impl Folder {
         file.as_file().sync_all()?;
         Ok(file)
     }
+}
+
+/// The files of a folder whose names are `name` with a number in the place of its `*`.
+fn numbered(folder: &Path, name: &str) -> Vec<PathBuf> {
+    let Some((before, after)) = name.split_once('*') else { return Vec::new() };
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let is_one = |found: &str| {
+        let number = found.strip_prefix(before).and_then(|rest| rest.strip_suffix(after));
+        number.is_some_and(|n| !n.is_empty() && n.bytes().all(|byte| byte.is_ascii_digit()))
+    };
+    entries
+        .filter(|entry| entry.file_name().to_str().is_some_and(is_one))
+        .map(|entry| entry.path())
+        .collect()
+}
+
+/// What tells whether two paths lead to the same file.
+#[cfg(unix)]
+fn identity(path: &Path) -> io::Result<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    fs::metadata(path).map(|found| (found.dev(), found.ino()))
+}
+
+/// The same where files have no numbers.
+#[cfg(not(unix))]
+fn identity(path: &Path) -> io::Result<PathBuf> {
+    fs::canonicalize(path)
 }
 
 /// The longest existing beginning of a path, which must be a folder.

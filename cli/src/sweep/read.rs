@@ -6,12 +6,12 @@ use super::shard::Shard;
 use crate::case::document::{self, Node, Origin, Table, Value};
 use crate::case::error::{CaseError, Complaint};
 use crate::case::reader::{Reader, Section};
-use crate::case::resolve::{plain_name, resolve};
+use crate::case::resolve::{own_name, plain_name, resolve};
 use crate::case::{
     CatalogueEntry, LoadError, ProblemCase, ResolvedCase, SWEEPS, load as load_case, source,
 };
 use crate::closest::closest;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// More cases than this are a slip of the pen.
 const MOST: usize = 10_000_000;
@@ -44,6 +44,8 @@ pub(crate) struct Sweep {
     pub(crate) plan: Plan,
     /// The cases of this shard.
     pub(crate) cases: Vec<SweepCase>,
+    /// The files that were read.
+    pub(crate) inputs: Vec<PathBuf>,
 }
 
 /// One case of a sweep.
@@ -74,7 +76,19 @@ pub(crate) fn load(
     let stem = plain_name(&path.file_stem().unwrap_or_default().to_string_lossy());
     let folder = path.parent().unwrap_or(Path::new(""));
     let tree = document::parse(&file, &text, &[])?;
-    sweep(&file, &stem, folder, tree, shard, catalogue)
+    let base = match tree.get("case").map(|node| &node.value) {
+        Some(Value::Text(value)) => Some(base_path(folder, value)),
+        _ => None,
+    };
+    let inputs = std::iter::once(path.to_path_buf()).chain(base).collect();
+    Ok(Sweep { inputs, ..sweep(&file, &stem, folder, tree, shard, catalogue)? })
+}
+
+/// The file that a case's word means, if it means one.
+fn base_path(folder: &Path, value: &str) -> PathBuf {
+    let path = Path::new(value);
+    let is_path = value.contains(['/', '\\']) || path.extension().is_some();
+    if is_path { folder.join(path) } else { path.to_path_buf() }
 }
 
 pub(super) fn sweep(
@@ -87,7 +101,7 @@ pub(super) fn sweep(
 ) -> Result<Sweep, SweepError> {
     let reader = Reader::new(file);
     let root = Section::root(&tree);
-    let name = reader.text(root, "name").unwrap_or(stem).to_owned();
+    let name = own_name(&reader, root).unwrap_or(stem).to_owned();
     let axes = axes(&reader, root);
     let base = reader.text(root, "case").zip(root.get("case"));
     let base = base.map(|(value, node)| from(file, folder, value, node, catalogue)).transpose()?;
@@ -115,9 +129,7 @@ fn from(
     node: &Node,
     catalogue: &[CatalogueEntry],
 ) -> Result<Table, SweepError> {
-    let path = Path::new(value);
-    let is_path = value.contains(['/', '\\']) || path.extension().is_some();
-    let path = if is_path { folder.join(path) } else { path.to_path_buf() };
+    let path = base_path(folder, value);
     let refused = |error| SweepError::Base {
         file: file.to_owned(),
         origin: node.origin,
@@ -219,7 +231,7 @@ fn expand(
         axes,
         base: first.to_toml().lines().filter(|line| !line.is_empty()).map(str::to_owned).collect(),
     };
-    Ok(Sweep { plan, cases })
+    Ok(Sweep { plan, cases, inputs: Vec::new() })
 }
 
 /// The name of a case: that of the sweep with its number.

@@ -69,6 +69,20 @@ pub(crate) enum MapError {
         /// Its value in the case.
         value: f64,
     },
+    /// Bounds of which one is nothing beside the other.
+    #[error(
+        "{key} = {value:e}: must be zero, or of a size of at least {least:.1e}, 1e-12 of {other}"
+    )]
+    TooWide {
+        /// The bound's key.
+        key: &'static str,
+        /// The key of the other one.
+        other: &'static str,
+        /// Its value.
+        value: f64,
+        /// The least that is allowed.
+        least: f64,
+    },
     /// The case lies outside its own map.
     #[error("{key} = {value} of the case is not between map.from = {} and map.to = {}", .range.0, .range.1)]
     Outside {

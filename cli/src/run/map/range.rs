@@ -3,11 +3,15 @@
 use super::MapError;
 use crate::case::MapCase;
 
+/// Bounds of a positive parameter differ by at most twelve decades: beyond, rounding has taken over.
+const LEAST: f64 = 1e-12;
+
 /// The range: as the case says, else from a tenth to ten times the case's value; about a value of zero
 /// as far as is `usual`.
 ///
 /// # Errors
-/// When it is not given and the value is zero without a usual range, or when the value lies outside.
+/// When it is not given and the value is zero without a usual range, when the value lies outside, or
+/// when the bounds lie too many decades apart.
 pub(super) fn bounds(
     key: &str,
     value: f64,
@@ -21,6 +25,12 @@ pub(super) fn bounds(
     let (low, high) = (map.from.unwrap_or(near.min(far)), map.to.unwrap_or(near.max(far)));
     if value == 0.0 && usual.is_none() && (map.from.is_none() || map.to.is_none()) {
         return Err(MapError::NoRange { key: key.to_string(), value });
+    }
+    let (inner, outer) = if low > 0.0 { (low, high) } else { (-high, -low) };
+    if 0.0 < inner && inner < LEAST * outer {
+        let (key, other) = if low > 0.0 { ("map.from", "map.to") } else { ("map.to", "map.from") };
+        let (value, least) = (inner.copysign(low), LEAST * outer);
+        return Err(MapError::TooWide { key, other, value, least });
     }
     if !(low < high && (low..=high).contains(&value)) {
         return Err(MapError::Outside { key: key.to_string(), value, range: (low, high) });
