@@ -51,7 +51,7 @@ fn ranges_of_a_map_span_a_sensible_number_of_decades() {
 #[test]
 fn threads_are_limited() {
     for jobs in ["0", "-1", "1025", "100000", "18446744073709551615", "many"] {
-        refused(&["sweep", "phase", "--jobs", jobs], &["--jobs"]);
+        refused(&["sweep", "phase", &format!("--jobs={jobs}")], &["--jobs", jobs]);
     }
     refused(&["sweep", "phase", "--jobs", "1025"], &["1..=1024"]);
 }
