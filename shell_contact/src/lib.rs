@@ -39,6 +39,7 @@ pub mod gas;
 pub mod identify;
 pub mod membrane;
 pub mod meridian;
+pub mod modes;
 pub mod observables;
 pub mod params;
 pub mod quadrature;

@@ -34,4 +34,9 @@ impl Membrane for Hooke {
             w_mm: T::constant(k),
         }
     }
+
+    #[inline(always)]
+    fn shear<T: Scalar>(&self, _q: T, _m: T) -> T {
+        T::constant(0.25 / (1.0 + self.poisson))
+    }
 }

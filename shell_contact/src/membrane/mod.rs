@@ -37,6 +37,9 @@ pub trait Membrane: Copy {
     fn energy<T: Scalar>(&self, q: T, m: T) -> T;
     /// The energy and its first and second derivatives.
     fn jet<T: Scalar>(&self, q: T, m: T) -> MembraneJet<T>;
+    /// `(∂w/∂q − ∂w/∂m)/(q − m)`, regular at `q = m`: the second derivative in a small shear
+    /// `C_12` is twice this.
+    fn shear<T: Scalar>(&self, q: T, m: T) -> T;
 }
 
 /// Tensions `(τ_ss, τ_φφ)` per deformed length, Eq. (8), from the stretches
@@ -64,6 +67,10 @@ mod tests {
                 close(jet.w_qq, d.hessian[0][0], 1e-12, 1e-15);
                 close(jet.w_qm, d.hessian[0][1], 1e-12, 1e-15);
                 close(jet.w_mm, d.hessian[1][1], 1e-12, 1e-15);
+                close(law.shear(q, m) * (q - m), jet.w_q - jet.w_m, 1e-12, 1e-15);
+                // at equal stretches the difference quotient is a derivative
+                let even = law.jet(q, q);
+                close(law.shear(q, q), even.w_qq - even.w_qm, 1e-12, 1e-15);
             }
         }
     }

@@ -45,4 +45,12 @@ impl Membrane for MooneyRivlin {
             w_mm: (j * imm * g + imm * im * h) * 2.0,
         }
     }
+
+    #[inline(always)]
+    fn shear<T: Scalar>(&self, q: T, m: T) -> T {
+        let (g, h) = ((1.0 - self.b) * HALF_SHEAR, self.b * HALF_SHEAR);
+        let j = (q * m).recip();
+        let jj = j * j;
+        jj * g + ((q + m) * jj - 1.0) * h
+    }
 }

@@ -44,4 +44,10 @@ impl Membrane for Skalak {
             w_mm: (q * q * c + 1.0) * half,
         }
     }
+
+    #[inline(always)]
+    fn shear<T: Scalar>(&self, q: T, m: T) -> T {
+        let half = 0.25 / (1.0 + self.poisson);
+        (-((q * m - 1.0) * self.area_constant()) + 1.0) * half
+    }
 }

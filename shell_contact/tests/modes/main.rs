@@ -1,0 +1,9 @@
+//! Modes that are not axisymmetric or not mirror images: exact spectra, and onsets along branches
+//! against an independent solver.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod onsets;
+mod spectra;
