@@ -406,11 +406,17 @@
   const main = charts[0];
   const shown = main ? [...new Set([...charts.map((chart) => chart.x[0]), main.columns[0][0]])] : [];
   const rows = new Map();
+  // the counts on both sides, as the program writes them
+  const passage = (curve, { point, unstable }) => {
+    const known = (count) => (count === undefined || count === null || count < 0 ? "–" : String(count));
+    const [before, after] = (unstable ?? [curve.unstable[point - 1], curve.unstable[point + 1]]).map(known);
+    return before === after ? before : `${before} → ${after}`;
+  };
   const table = document.getElementById("events");
   const several = curves.length > 1;
+  const titles = ["kind", ...(several ? ["curve"] : []), ...shown.map(words), "unstable"];
   table.append(element("thead", {}, element("tr", {},
-    ...["kind", ...(several ? ["curve"] : []), ...shown.map(words), "unstable"].map((name) =>
-      element("th", { scope: "col", textContent: name })))));
+    ...titles.map((name) => element("th", { scope: "col", textContent: name })))));
   const body = element("tbody");
   table.append(body);
   curves.forEach((curve, k) => curve.marks.forEach((mark) => {
@@ -418,8 +424,10 @@
     button.addEventListener("click", () => want({ curve: k, point: mark.point }));
     const cells = shown.map((name) => text(curve.columns[name]?.[mark.point]));
     const row = element("tr", {}, element("td", {}, button),
-      ...[...(several ? [curve.label] : []), ...cells, text(curve.unstable[mark.point])].map((cell) =>
+      ...[...(several ? [curve.label] : []), ...cells, passage(curve, mark)].map((cell) =>
         element("td", { textContent: cell })));
+    // on narrow screens every cell stands under its own title
+    [...row.cells].forEach((cell, j) => { cell.dataset.title = titles[j]; });
     rows.set(`${k}/${mark.point}`, row);
     body.append(row);
   }));

@@ -71,6 +71,10 @@ pub struct Mark {
     pub point: usize,
     /// Its kind, as in the tables.
     pub kind: String,
+    /// Unstable modes before and after, where they are known for the point itself; else the page
+    /// takes those of its neighbours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unstable: Option<[Option<usize>; 2]>,
 }
 
 /// The state at a point: an axisymmetric, mirror-symmetric shell between two plates or rings.

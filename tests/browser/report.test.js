@@ -210,6 +210,47 @@ test("every control has a name, and nothing sticks out, in all widths and scheme
   }
 });
 
+test("special points have the counts on both sides, and no column is cut on a narrow screen", async () => {
+  for (const width of [1280, 400, 320]) {
+    for (const which of ["contact", "diagram", "cycle", "ring"]) {
+      await visit(which, { viewport: { width, height: 800 } }, async (page) => {
+        const rows = await page.locator("#events tbody tr").evaluateAll((all) => all.map((row) => {
+          const box = row.closest(".scroll").getBoundingClientRect();
+          const cut = [...row.cells].filter((cell) => {
+            const at = cell.getBoundingClientRect();
+            return at.left < box.left - 1 || at.right > box.right + 1 || cell.scrollWidth > cell.clientWidth + 1;
+          });
+          return { kind: row.cells[0].textContent, unstable: row.cells[row.cells.length - 1].textContent, cut: cut.length };
+        }));
+        assert.ok(rows.length > 0 && rows.every((row) => row.cut === 0), `${which} at ${width}: ${JSON.stringify(rows)}`);
+        if (which === "contact") {
+          const folds = rows.filter((row) => row.kind === "fold").map((row) => row.unstable);
+          assert.deepEqual(folds, ["0 → 1", "1 → 0"]);
+        }
+      });
+    }
+  }
+});
+
+test("a language that is no valid tag leaves the page whole", async () => {
+  for (const language of ["en-US@posix", "C", "c", "", "de-DE", "ja-JP"]) {
+    const context = await browser.newContext({ viewport: { width: 1280, height: 900 } });
+    await context.addInitScript((tag) => {
+      Object.defineProperty(Navigator.prototype, "language", { get: () => tag, configurable: true });
+    }, language);
+    const page = await context.newPage();
+    const complaints = [];
+    page.on("console", (message) => complaints.push(message.text()));
+    page.on("pageerror", (error) => complaints.push(String(error)));
+    await page.goto(pathToFileURL(pages.contact).href);
+    await frames(page);
+    assert.deepEqual(complaints, [], language);
+    assert.equal(await page.locator("figure canvas").count() > 3, true, language);
+    assert.match(await value(page, "curve"), /point 1 of/, language);
+    await context.close();
+  }
+});
+
 test("the scheme may change while the page is open", async () => {
   await visit("contact", { viewport: { width: 1280, height: 900 }, colorScheme: "light" }, async (page) => {
     const light = await pixels(page, "Shape");

@@ -60,5 +60,11 @@ fn deliver(
         }
     }
     let complete = result.stopped_because.is_complete();
-    arguments.output.deliver(folder, made, |written| cycle_summary(result, written), complete)
+    arguments.output.deliver(
+        folder,
+        made,
+        &arguments.case.inputs(),
+        |written| cycle_summary(result, written),
+        complete,
+    )
 }

@@ -2,7 +2,7 @@
 
 use crate::arguments::OutputArguments;
 use crate::exit::Exit;
-use crate::output::Folder;
+use crate::output::{Earlier, Files, Folder, with_files};
 use crate::terminal;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -25,28 +25,32 @@ impl OutputArguments {
         names: &[&str],
         inputs: &[PathBuf],
     ) -> Result<Option<Folder>, Exit> {
-        let checked = self.place(case).map(|path| {
-            let folder = Folder::check(&path, names)?;
-            folder.spare(inputs, names).map(|()| folder)
-        });
-        checked.transpose().map_err(|error| {
+        let claimed = self.place(case).map(|path| Folder::claim(&path, names, inputs));
+        claimed.transpose().map_err(|error| {
             terminal::error(&error);
             Exit::BadInput
         })
     }
 
-    /// Writes files, JSON and summary; what cannot be made is said and left out. `summary` is told
+    /// Writes files, JSON and summary; what cannot be made is said and left out. Files that an earlier
+    /// run left there and that say something else now are removed, `inputs` never. `summary` is told
     /// where the files went, if they went anywhere; `complete` says whether all was computed.
     pub(super) fn deliver(
         &self,
         folder: Option<&Folder>,
         mut made: Made,
+        inputs: &[PathBuf],
         summary: impl FnOnce(Option<&Path>) -> String,
         complete: bool,
     ) -> Exit {
         let mut written = None;
         if let Some(folder) = folder {
-            written = made.take(folder.write(&made.files)).map(|()| folder.path());
+            made.list();
+            let earlier = made.earlier(folder.path());
+            written = made.take(folder.write_surely(&made.files)).map(|()| folder.path());
+            if !made.failed {
+                earlier.remove(folder.path(), &made.sums, inputs);
+            }
         }
         let mut printed = Exit::Done;
         if self.json {
@@ -73,15 +77,18 @@ impl OutputArguments {
 /// What a command has made for its user.
 #[derive(Debug, Default)]
 pub(super) struct Made {
+    name: String,
     json: String,
     files: Vec<(String, Vec<u8>)>,
+    /// Checksums of all files, those written already included.
+    sums: Files,
     failed: bool,
 }
 
 impl Made {
     /// The JSON, which is also the file `name`.
     pub(super) fn json<E: Display>(name: &str, json: Result<String, E>) -> Self {
-        let mut made = Made::default();
+        let mut made = Made { name: name.to_owned(), ..Made::default() };
         made.json = made.take(json).unwrap_or_default();
         let text = made.json.clone();
         made.file(name, text);
@@ -111,9 +118,30 @@ impl Made {
         }
     }
 
-    /// Something that was written already, or could not be.
-    pub(super) fn done<E: Display>(&mut self, written: Result<(), E>) {
-        self.take(written);
+    /// A file that was written already, with this checksum, or could not be.
+    pub(super) fn done<E: Display>(&mut self, name: &str, written: Result<u32, E>) {
+        if let Some(sum) = self.take(written) {
+            self.sums.insert(name.to_owned(), sum);
+        }
+    }
+
+    /// Lists the files in the JSON.
+    fn list(&mut self) {
+        let others = self.files.iter().filter(|(name, _)| *name != self.name);
+        self.sums.extend(others.map(|(name, bytes)| (name.clone(), crc32fast::hash(bytes))));
+        self.json = with_files(&self.json, &self.sums);
+        for (_, bytes) in self.files.iter_mut().filter(|(name, _)| *name == self.name) {
+            bytes.clone_from(&self.json.clone().into_bytes());
+        }
+        // a file itself, but its own checksum it cannot hold
+        self.sums.insert(self.name.clone(), 0);
+    }
+
+    /// What earlier runs left in the folder.
+    fn earlier(&self, folder: &Path) -> Earlier {
+        let case = self.files.iter().find(|(name, _)| name == "case.toml");
+        let case = case.and_then(|(_, bytes)| std::str::from_utf8(bytes).ok());
+        Earlier::read(folder, &self.name, case)
     }
 
     /// What was made; an error is said.

@@ -44,7 +44,10 @@ pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
     };
     let saved = match &checkpoint {
         Some(checkpoint) if !arguments.restart => match checkpoint.load() {
-            Ok(saved) => saved,
+            Ok((saved, damaged)) => {
+                super::report_damage(&damaged);
+                saved
+            }
             Err(error) => return refuse(&error),
         },
         _ => Saved::default(),
@@ -161,9 +164,5 @@ fn deliver(
     }
     let complete = result.is_complete();
     let summary = |written: Option<&Path>| diagram_summary(result, written);
-    let exit = arguments.output.deliver(folder, made, summary, complete);
-    if let Some(folder) = folder.filter(|_| exit != Exit::NotWritten) {
-        folder.remove_numbered("branch", result.branches.len());
-    }
-    exit
+    arguments.output.deliver(folder, made, &arguments.case.inputs(), summary, complete)
 }

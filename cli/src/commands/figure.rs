@@ -41,7 +41,7 @@ pub(super) fn figure(arguments: &FigureArguments) -> Exit {
     }
     observer.finish();
     let complete = computed.early.is_empty();
-    arguments.output.deliver(folder.as_ref(), made, |at| summary(&computed, at), complete)
+    arguments.output.deliver(folder.as_ref(), made, &[], |at| summary(&computed, at), complete)
 }
 
 fn refuse(error: &FigureError) -> Exit {

@@ -55,13 +55,11 @@ fn deliver(
         }
     }
     let complete = result.stopped_because.is_complete();
-    let exit =
-        arguments.output.deliver(folder, made, |written| map_summary(result, written), complete);
-    if let Some(folder) = folder.filter(|_| exit != Exit::NotWritten) {
-        for kind in ["fold", "hopf", "branch-point"] {
-            let curves = result.curves.iter().filter(|curve| curve.kind == kind);
-            folder.remove_numbered(kind, curves.count());
-        }
-    }
-    exit
+    arguments.output.deliver(
+        folder,
+        made,
+        &arguments.case.inputs(),
+        |written| map_summary(result, written),
+        complete,
+    )
 }

@@ -17,6 +17,7 @@ use crate::arguments::{Arguments, CaseArguments, Command};
 use crate::case::{LoadedCase, Override, load};
 use crate::exit::Exit;
 use crate::{run, terminal};
+use std::path::PathBuf;
 
 /// Do what was asked.
 pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
@@ -51,6 +52,17 @@ fn loaded(
         }
     }
     Ok(loaded)
+}
+
+/// Say which of the files that were kept are no longer what was written.
+fn report_damage(damaged: &[PathBuf]) {
+    for path in damaged {
+        let path = path.display();
+        terminal::err(&format!(
+            "warning: {path}: damaged; set aside as {path}.damaged, and what it held is computed \
+             again\n"
+        ));
+    }
 }
 
 /// Print on standard output; the exit code tells whether that worked.

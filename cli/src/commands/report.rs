@@ -1,6 +1,6 @@
 //! `report.html`: what a command found, as a page to look at.
 
-use crate::output::{ContactRow, CycleResult, Table, TraceResult};
+use crate::output::{ContactRow, CycleResult, EventRecord, Table, TraceResult};
 use crate::run::RING_AXES;
 use report::{Chart, Curve, Mark, Report, State};
 
@@ -25,6 +25,7 @@ const CHARTS: usize = 4;
 struct Line<'a> {
     label: &'a str,
     table: &'a Table,
+    events: &'a [EventRecord],
     states: &'a [State],
     jumps: &'a [usize],
 }
@@ -44,6 +45,7 @@ pub(super) fn report(
         .map(|(label, branch)| Line {
             label,
             table: &branch.table,
+            events: &branch.events,
             states: &branch.pictures.states,
             jumps: &[],
         })
@@ -60,12 +62,14 @@ pub(super) fn cycle_report(cycle: &CycleResult) -> Result<String, serde_json::Er
     let ways = cycle.reported.ways.iter().map(|way| Line {
         label: way.label,
         table: &way.table,
+        events: &[],
         states: &way.states,
         jumps: &way.jumps,
     });
     let complete = Line {
         label: "complete branch",
         table: &cycle.branch,
+        events: &[],
         states: &cycle.reported.branch,
         jumps: &[],
     };
@@ -185,7 +189,11 @@ fn curve(line: &Line<'_>) -> Curve {
         let elsewhere = matches!(name.as_str(), "point" | "unstable" | "event" | "certified");
         !elsewhere && *name != FLAG
     };
-    let marks = table.words("event").map(|(point, kind)| Mark { point, kind: kind.to_owned() });
+    let marks = table.words("event").enumerate().map(|(k, (point, kind))| {
+        let event = line.events.get(k).filter(|event| event.kind == kind);
+        let unstable = event.map(|event| [event.unstable_before, event.unstable_after]);
+        Mark { point, kind: kind.to_owned(), unstable }
+    });
     let flag: Vec<bool> = table.words(FLAG).map(|(_, word)| word == "true").collect();
     // a flag that is not known everywhere is not shown
     let known = !flag.is_empty() && flag.len() == table.rows().len();

@@ -42,7 +42,10 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Exit {
     };
     let kept = match &store {
         Some(store) if !arguments.restart => match store.load(&sweep.cases) {
-            Ok(kept) => kept,
+            Ok((kept, damaged)) => {
+                super::report_damage(&damaged);
+                kept
+            }
             Err(error) => return refuse(&error),
         },
         _ => Vec::new(),
@@ -61,15 +64,13 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Exit {
         Ok(run) => run,
         Err(exit) => return exit,
     };
-    if let Some(store) = &store {
-        store.tidy();
-    }
     if let Some(error) = &run.failure {
         terminal::error(error);
     }
     let asked = sweep.cases.len();
     let result = SweepResult::new(&sweep.plan, asked, &run.kept, run.interrupted);
-    let exit = deliver(&arguments.output, folder.as_ref(), &sweep.plan, &run.kept, &result);
+    let output = &arguments.output;
+    let exit = deliver(output, folder.as_ref(), &sweep.plan, &run.kept, &result, &sweep.inputs);
     if run.failure.is_some() { Exit::NotWritten } else { exit }
 }
 
@@ -92,7 +93,15 @@ pub(super) fn merge(arguments: &MergeArguments) -> Exit {
     let mut kept: Vec<Kept> = Vec::new();
     for (_, store) in &stores {
         match store.all() {
-            Ok(all) => kept.extend(all),
+            Ok((all, damaged)) => {
+                for path in damaged {
+                    let path = path.display();
+                    terminal::err(&format!(
+                        "warning: {path}: damaged, so its case is missing; start its sweep again\n"
+                    ));
+                }
+                kept.extend(all);
+            }
             Err(error) => return refuse(&error),
         }
     }
@@ -100,7 +109,7 @@ pub(super) fn merge(arguments: &MergeArguments) -> Exit {
     kept.sort_by_key(|case| case.record.case);
     kept.dedup_by_key(|case| case.record.case);
     let result = SweepResult::new(&plan, plan.count().unwrap_or(0), &kept, false);
-    deliver(&arguments.output, folder.as_ref(), &plan, &kept, &result)
+    deliver(&arguments.output, folder.as_ref(), &plan, &kept, &result, &[])
 }
 
 fn refuse(error: &dyn std::fmt::Display) -> Exit {
@@ -161,7 +170,17 @@ fn compute(
     }
     let mut run = shared.into_inner().unwrap_or_else(PoisonError::into_inner);
     run.kept.sort_by_key(|case| case.record.case);
-    run.interrupted = run.failure.is_none() && run.kept.len() < sweep.cases.len();
+    let (there, lost): (Vec<Kept>, Vec<Kept>) = run.kept.drain(..).partition(Kept::is_there);
+    run.kept = there;
+    let stopped = run.kept.len() + lost.len() < sweep.cases.len();
+    if !lost.is_empty() {
+        let (lost, all) = (lost.len(), sweep.cases.len());
+        terminal::err(&format!(
+            "warning: the files of {lost} of {all} cases were removed while this ran; the same \
+             command computes them again\n"
+        ));
+    }
+    run.interrupted = run.failure.is_none() && stopped;
     Ok(run)
 }
 
@@ -187,12 +206,19 @@ fn deliver(
     plan: &Plan,
     kept: &[Kept],
     result: &SweepResult,
+    inputs: &[PathBuf],
 ) -> Exit {
     let mut made = Made::json(JSON, sweep_json(result));
     if let Some(folder) = folder {
         let other = |error| io::Error::other(error);
-        made.done(folder.stream(CURVES, |out| write_curves(plan, kept, out).map_err(other)));
-        made.done(folder.stream(EVENTS, |out| write_events(plan, kept, out).map_err(other)));
+        made.done(
+            CURVES,
+            folder.stream(CURVES, |out| write_curves(plan, kept, out).map_err(other)),
+        );
+        made.done(
+            EVENTS,
+            folder.stream(EVENTS, |out| write_events(plan, kept, out).map_err(other)),
+        );
         let phases = kept.iter().any(|case| case.record.phase.is_some());
         if phases && plan.plane().is_some() {
             made.attempt(PHASE, phase_csv(plan, kept));
@@ -202,5 +228,5 @@ fn deliver(
         }
     }
     let summary = |written: Option<&std::path::Path>| sweep_summary(result, written);
-    output.deliver(folder, made, summary, result.is_complete())
+    output.deliver(folder, made, inputs, summary, result.is_complete())
 }

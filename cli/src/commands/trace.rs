@@ -66,7 +66,13 @@ fn deliver(
         }
     }
     let complete = result.stopped_because.is_complete();
-    arguments.output.deliver(folder, made, |written| summary(result, written), complete)
+    arguments.output.deliver(
+        folder,
+        made,
+        &arguments.case.inputs(),
+        |written| summary(result, written),
+        complete,
+    )
 }
 
 #[cfg(test)]

@@ -2,9 +2,12 @@
 //! branch that is traced at the moment, in a folder of their own that the finished diagram removes.
 //!
 //! Every file is written under another name and renamed, so that a program that is killed at any
-//! moment leaves whole files. What belongs together is told by the case, whose text is kept beside.
+//! moment leaves whole files. What belongs together is told by the case, whose text is kept beside. A
+//! file that is not whole all the same, because a disk or a copy damaged it, is set aside, and what
+//! it held is computed again.
 
-use super::folder::{Folder, FolderError};
+use super::folder::{Folder, FolderError, remove};
+use super::sealed::{self, Found};
 use crate::run::{Keep, Saved};
 use continuation::diagram::{DiagramBranch, Unfinished};
 use serde::Serialize;
@@ -76,36 +79,73 @@ impl Checkpoint {
         Ok(Checkpoint { path, folder, fingerprint, latest: Instant::now(), failure: None })
     }
 
-    /// What is kept there.
+    /// What is kept there, and the files that were damaged.
     ///
     /// # Errors
     /// When it is of another case or cannot be read.
-    pub(crate) fn load(&self) -> Result<Saved, CheckpointError> {
+    pub(crate) fn load(&self) -> Result<(Saved, Vec<PathBuf>), CheckpointError> {
         let file = self.path.join(CASE);
-        let kept = match fs::read_to_string(&file) {
+        let kept = match fs::read(&file) {
             Ok(kept) => kept,
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Saved::default()),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Default::default()),
             Err(error) => return Err(unreadable(&file, &error)),
         };
-        if kept != self.fingerprint {
-            return Err(CheckpointError::Foreign {
-                path: self.path.clone(),
-                difference: difference(&kept, &self.fingerprint),
-            });
+        let mut damaged = Vec::new();
+        if kept != self.fingerprint.as_bytes() {
+            if !kept.is_empty() && !self.is_vouched_for()? {
+                return Err(CheckpointError::Foreign {
+                    path: self.path.clone(),
+                    difference: difference(&String::from_utf8_lossy(&kept), &self.fingerprint),
+                });
+            }
+            set_aside(&file, &mut damaged)?;
+            self.folder.write(&[(CASE.to_owned(), self.fingerprint.clone().into_bytes())])?;
         }
         let mut saved = Saved::default();
-        while let Some((branch, seconds)) = read(&self.path.join(name(saved.finished.len())))? {
+        while let Some((branch, seconds)) = self.read(&name(saved.finished.len()), &mut damaged)? {
             saved.finished.push(branch);
             saved.seconds = seconds;
         }
         if let Some((after, part, seconds)) =
-            read::<(usize, Unfinished, f64)>(&self.path.join(PART))?
+            self.read::<(usize, Unfinished, f64)>(PART, &mut damaged)?
             && after == saved.finished.len()
         {
             saved.unfinished = Some(part);
             saved.seconds = seconds;
         }
-        Ok(saved)
+        Ok((saved, damaged))
+    }
+
+    /// Whether a whole file beside the case says that it is of this one.
+    fn is_vouched_for(&self) -> Result<bool, CheckpointError> {
+        for name in [name(0), PART.to_owned()] {
+            let path = self.path.join(name);
+            let found = sealed::read(&path).map_err(|error| unreadable(&path, &error))?;
+            if matches!(found, Found::Whole(_, mark) if mark == sealed::mark(&self.fingerprint)) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// What a file holds; one that is damaged is set aside.
+    fn read<T: DeserializeOwned>(
+        &self,
+        name: &str,
+        damaged: &mut Vec<PathBuf>,
+    ) -> Result<Option<T>, CheckpointError> {
+        let path = self.path.join(name);
+        let value = match sealed::read(&path).map_err(|error| unreadable(&path, &error))? {
+            Found::Nothing => return Ok(None),
+            Found::Whole(bytes, mark) if mark == sealed::mark(&self.fingerprint) => {
+                ciborium::from_reader(&bytes[..]).ok()
+            }
+            Found::Whole(..) | Found::Damaged => None,
+        };
+        if value.is_none() {
+            set_aside(&path, damaged)?;
+        }
+        Ok(value)
     }
 
     /// Begins anew: removes what is there, and keeps the case.
@@ -126,17 +166,16 @@ impl Checkpoint {
     /// When the system refuses.
     pub(crate) fn remove(&self) -> Result<(), CheckpointError> {
         // the case first: without it the rest is nothing
-        for result in [fs::remove_file(self.path.join(CASE)), fs::remove_dir_all(&self.path)] {
-            match result {
-                Err(error) if error.kind() != ErrorKind::NotFound => {
-                    return Err(
-                        FolderError::Write { path: self.path.clone(), source: error }.into()
-                    );
-                }
-                _ => {}
-            }
-        }
-        Ok(())
+        let own = [
+            CASE,
+            PART,
+            "branch-*.cbor",
+            "case.toml.damaged",
+            "part.cbor.damaged",
+            "branch-*.cbor.damaged",
+        ];
+        remove(&self.path, &own)
+            .map_err(|source| FolderError::Write { path: self.path.clone(), source }.into())
     }
 
     /// The first file that could not be kept, if any.
@@ -148,7 +187,15 @@ impl Checkpoint {
         self.latest = Instant::now();
         let mut bytes = Vec::new();
         let written = match ciborium::into_writer(value, &mut bytes) {
-            Ok(()) => self.folder.write(&[(name, bytes)]),
+            Ok(()) => {
+                sealed::seal(&mut bytes, sealed::mark(&self.fingerprint));
+                let mut files = vec![(name, bytes)];
+                // somebody may have removed the folder
+                if !self.path.join(CASE).exists() {
+                    files.push((CASE.to_owned(), self.fingerprint.clone().into_bytes()));
+                }
+                self.folder.write(&files)
+            }
             Err(error) => Err(FolderError::Write {
                 path: self.path.join(name),
                 source: io::Error::other(error.to_string()),
@@ -184,13 +231,11 @@ fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> CheckpointError {
     CheckpointError::Unreadable { path: path.to_path_buf(), detail: error.to_string() }
 }
 
-fn read<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, CheckpointError> {
-    let file = match fs::File::open(path) {
-        Ok(file) => io::BufReader::new(file),
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(unreadable(path, &error)),
-    };
-    ciborium::from_reader(file).map(Some).map_err(|error| unreadable(path, &error))
+fn set_aside(path: &Path, damaged: &mut Vec<PathBuf>) -> Result<(), CheckpointError> {
+    sealed::set_aside(path)
+        .map_err(|source| FolderError::Write { path: path.to_path_buf(), source })?;
+    damaged.push(path.to_path_buf());
+    Ok(())
 }
 
 /// The first line in which two texts differ.

@@ -1,5 +1,6 @@
 //! The output folder: checked before the work, made after it, its files replaced atomically.
 
+use super::temporary;
 use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
@@ -108,12 +109,30 @@ impl Folder {
         Ok(Folder { path: path.to_path_buf() })
     }
 
+    /// The folder for these files, none of which may be one of `inputs`; what programs left there
+    /// half written that were killed is removed.
+    ///
+    /// # Errors
+    /// When the files cannot, or must not, be written.
+    pub(crate) fn claim(
+        path: &Path,
+        names: &[&str],
+        inputs: &[PathBuf],
+    ) -> Result<Self, FolderError> {
+        let folder = Folder::check(path, names)?;
+        folder.spare(inputs, names)?;
+        for place in ["", "unfinished", "cases"] {
+            temporary::tidy(&path.join(place));
+        }
+        Ok(folder)
+    }
+
     /// Check that none of the files `names` is one of `inputs`, through whatever links and whatever
     /// way it is reached. A name may have a `*` for a number.
     ///
     /// # Errors
     /// When one of them is.
-    pub(crate) fn spare(&self, inputs: &[PathBuf], names: &[&str]) -> Result<(), FolderError> {
+    fn spare(&self, inputs: &[PathBuf], names: &[&str]) -> Result<(), FolderError> {
         for input in inputs {
             let Ok(known) = identity(input) else { continue };
             let is_input = |path: &Path| identity(path).is_ok_and(|found| found == known);
@@ -166,18 +185,20 @@ impl Folder {
         Ok(())
     }
 
-    /// Removes the tables `NAME-K.csv` with `K` from `first` on: those of an earlier run that had more
-    /// of them. One that cannot be removed stays.
-    pub(crate) fn remove_numbered(&self, name: &str, first: usize) {
-        for k in first.. {
-            if fs::remove_file(self.path.join(format!("{name}-{k}.csv"))).is_err() {
-                return;
-            }
+    /// The same, and once more if somebody has removed the folder meanwhile.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub(crate) fn write_surely(&self, files: &[(String, Vec<u8>)]) -> Result<(), FolderError> {
+        let there = || files.iter().all(|(name, _)| self.path.join(name).is_file());
+        if self.write(files).is_ok() && there() {
+            return Ok(());
         }
+        self.write(files)
     }
 
     /// Make the folder and write a file from what `fill` says, likewise replaced at once; for files
-    /// that need not fit into memory.
+    /// that need not fit into memory. Its checksum is returned.
     ///
     /// # Errors
     /// When the system, or `fill`, refuses.
@@ -185,24 +206,27 @@ impl Folder {
         &self,
         name: &str,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> Result<(), FolderError> {
+    ) -> Result<u32, FolderError> {
         let target = self.path.join(name);
         let write = || {
             fs::create_dir_all(&self.path)?;
             let file = self.temporary(&[])?;
-            let mut buffered = io::BufWriter::new(file);
+            let summing = Summing { file, sum: crc32fast::Hasher::new() };
+            let mut buffered = io::BufWriter::new(summing);
             fill(&mut buffered)?;
-            let file = buffered.into_inner().map_err(io::IntoInnerError::into_error)?;
+            let Summing { file, sum } =
+                buffered.into_inner().map_err(io::IntoInnerError::into_error)?;
             file.as_file().sync_all()?;
             file.persist(&target).map_err(|error| error.error)?;
-            Ok(())
+            Ok(sum.finalize())
         };
         write().map_err(|source| FolderError::Write { path: target.clone(), source })
     }
 
     fn temporary(&self, bytes: &[u8]) -> io::Result<NamedTempFile> {
         let mut builder = Builder::new();
-        builder.prefix(".arclen-");
+        let prefix = temporary::prefix();
+        builder.prefix(&prefix);
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let mut file = builder.tempfile_in(&self.path)?;
@@ -210,6 +234,45 @@ impl Folder {
         file.as_file().sync_all()?;
         Ok(file)
     }
+}
+
+/// Adds up what it writes.
+struct Summing {
+    file: NamedTempFile,
+    sum: crc32fast::Hasher,
+}
+
+impl Write for Summing {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.sum.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// Removes the files of a folder that are called `names`, in which a `*` stands for a number, and the
+/// folder if nothing is left in it.
+///
+/// # Errors
+/// When the system refuses.
+pub(super) fn remove(folder: &Path, names: &[&str]) -> io::Result<()> {
+    for name in names {
+        let mut files = numbered(folder, name);
+        files.push(folder.join(name));
+        for file in files {
+            match fs::remove_file(&file) {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
+    }
+    // what else is there is not the program's
+    let _ = fs::remove_dir(folder);
+    Ok(())
 }
 
 /// The files of a folder whose names are `name` with a number in the place of its `*`.

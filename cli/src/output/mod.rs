@@ -5,12 +5,15 @@ mod cycle;
 mod diagram;
 mod events;
 mod folder;
+mod manifest;
 mod map;
 mod number;
 mod result;
+mod sealed;
 mod summary;
 mod sweep;
 mod table;
+mod temporary;
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -22,6 +25,7 @@ pub(crate) use diagram::{BranchRecord, DiagramResult, From, NearRecord};
 pub(crate) use diagram::{diagram_json, diagram_summary};
 pub(crate) use events::events_json;
 pub(crate) use folder::Folder;
+pub(crate) use manifest::{Earlier, Files, with_files};
 pub(crate) use map::{MapCurve, MapPoint, MapResult, map_json, map_summary};
 pub(crate) use result::{Cell, ContactRow, EventRecord, FormRecord, MaxwellRecord, Table};
 pub(crate) use result::{Pictures, TraceResult};

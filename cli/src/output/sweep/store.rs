@@ -4,17 +4,19 @@
 //! leaves whole files, and what is finished stays finished. Every file holds the text of its case;
 //! `plan.json` beside them says what varies, and tells a sweep that has changed from one that goes
 //! on. The files stay when the sweep is done: the tables are made from them, and so is the union of
-//! several shards.
+//! several shards. A file that a disk or a copy damaged is set aside, and its case computed again.
 
 use super::record::CaseRecord;
 use crate::output::checkpoint::difference;
-use crate::output::folder::{Folder, FolderError};
+use crate::output::folder::{Folder, FolderError, remove};
 use crate::output::result::Table;
+use crate::output::sealed::{self, Found};
+use crate::output::temporary;
 use crate::run::Outcome;
 use crate::sweep::{Plan, SweepCase};
 use serde::{Deserialize, Serialize};
 use std::fs;
-use std::io::{self, BufReader, ErrorKind, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 const FOLDER: &str = "cases";
@@ -98,9 +100,19 @@ impl Kept {
     /// When the file cannot be read.
     pub(super) fn tables(&self) -> Result<(Table, Table), StoreError> {
         let failed = |error: &dyn std::fmt::Display| unreadable(&self.path, error);
-        let mut file = BufReader::new(fs::File::open(&self.path).map_err(|error| failed(&error))?);
+        let bytes = match sealed::read(&self.path).map_err(|error| failed(&error))? {
+            Found::Whole(bytes, _) => bytes,
+            Found::Nothing => return Err(failed(&"it is gone; start the same sweep again")),
+            Found::Damaged => return Err(failed(&"damaged; start the same sweep again")),
+        };
+        let mut file = &bytes[..];
         let _: Head = ciborium::from_reader(&mut file).map_err(|error| failed(&error))?;
         ciborium::from_reader(&mut file).map_err(|error| failed(&error))
+    }
+
+    /// Whether its file is still there.
+    pub(crate) fn is_there(&self) -> bool {
+        self.path.as_os_str().is_empty() || self.path.is_file()
     }
 }
 
@@ -141,56 +153,94 @@ impl Store {
         &self.plan
     }
 
-    /// The cases that are kept, those of `cases` in their order. A file that is not whole, which only
-    /// a computer that lost its power leaves, is taken for none.
+    /// The cases that are kept, those of `cases` in their order, and the files that were damaged.
     ///
     /// # Errors
     /// When they are of another sweep, or cannot be read.
-    pub(crate) fn load(&self, cases: &[SweepCase]) -> Result<Vec<Kept>, StoreError> {
-        let Some(kept) = text(&self.path.join(PLAN))? else { return Ok(Vec::new()) };
+    pub(crate) fn load(
+        &self,
+        cases: &[SweepCase],
+    ) -> Result<(Vec<Kept>, Vec<PathBuf>), StoreError> {
+        let file = self.path.join(PLAN);
+        let kept = match fs::read(&file) {
+            Ok(kept) => kept,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Default::default()),
+            Err(error) => return Err(unreadable(&file, &error)),
+        };
         let asked = document(&self.plan)?;
         let foreign = |kept: &str, asked: &str| StoreError::Foreign {
             path: self.path.clone(),
             difference: difference(kept, asked),
         };
-        if kept != asked {
-            return Err(foreign(&kept, &asked));
+        let mut damaged = Vec::new();
+        if kept != asked.as_bytes() {
+            let is_one = serde_json::from_slice::<Plan>(&kept).is_ok();
+            if is_one && !self.is_vouched_for(cases, sealed::mark(&asked))? {
+                return Err(foreign(&String::from_utf8_lossy(&kept), &asked));
+            }
+            set_aside(&file, &mut damaged)?;
         }
         let mut found = Vec::new();
         for case in cases {
-            let Some((kept, of)) = self.head(case.index)? else { continue };
-            let own = identity(case);
-            if of != own {
-                return Err(foreign(&of, &own));
+            match self.head(case.index)? {
+                Case::Missing => {}
+                Case::Damaged(path) => set_aside(&path, &mut damaged)?,
+                Case::Whole(kept, of) => {
+                    let own = identity(case);
+                    if of != own {
+                        return Err(foreign(&of, &own));
+                    }
+                    found.push(*kept);
+                }
             }
-            found.push(kept);
         }
-        Ok(found)
+        Ok((found, damaged))
     }
 
-    /// All cases that are kept, of whatever shard, in order.
+    /// Whether a whole file beside the plan says that it is of this sweep.
+    fn is_vouched_for(&self, cases: &[SweepCase], mark: u64) -> Result<bool, StoreError> {
+        for case in cases {
+            let path = self.path.join(name(case.index));
+            match sealed::read(&path).map_err(|error| unreadable(&path, &error))? {
+                Found::Whole(_, found) => return Ok(found == mark),
+                Found::Nothing | Found::Damaged => {}
+            }
+        }
+        Ok(false)
+    }
+
+    /// All cases that are kept, of whatever shard, in order, and the files that are damaged.
     ///
     /// # Errors
     /// When they cannot be read.
-    pub(crate) fn all(&self) -> Result<Vec<Kept>, StoreError> {
+    pub(crate) fn all(&self) -> Result<(Vec<Kept>, Vec<PathBuf>), StoreError> {
         let count = self.plan.count().unwrap_or(0);
         let shard = self.plan.shard;
-        let own = (0..count).filter(|case| shard.holds(*case));
-        let heads = own.map(|case| self.head(case));
-        Ok(heads.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().map(|(k, _)| k).collect())
+        let (mut all, mut damaged) = (Vec::new(), Vec::new());
+        for case in (0..count).filter(|case| shard.holds(*case)) {
+            match self.head(case)? {
+                Case::Missing => {}
+                Case::Damaged(path) => damaged.push(path),
+                Case::Whole(kept, _) => all.push(*kept),
+            }
+        }
+        Ok((all, damaged))
     }
 
-    fn head(&self, case: usize) -> Result<Option<(Kept, String)>, StoreError> {
+    fn head(&self, case: usize) -> Result<Case, StoreError> {
         let path = self.path.join(name(case));
-        let file = match fs::File::open(&path) {
-            Ok(file) => file,
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(unreadable(&path, &error)),
+        let bytes = match sealed::read(&path).map_err(|error| unreadable(&path, &error))? {
+            Found::Nothing => return Ok(Case::Missing),
+            Found::Damaged => return Ok(Case::Damaged(path)),
+            Found::Whole(bytes, _) => bytes,
         };
-        let head: Option<Head> = ciborium::from_reader(BufReader::new(file)).ok();
-        Ok(head.map(|Head { case, record, curve, events }| {
-            (Kept { record, curve, events, path }, case)
-        }))
+        let head: Result<Head, _> = ciborium::from_reader(&bytes[..]);
+        Ok(match head {
+            Ok(Head { case, record, curve, events }) => {
+                Case::Whole(Box::new(Kept { record, curve, events, path }), case)
+            }
+            Err(_) => Case::Damaged(path),
+        })
     }
 
     /// Makes the folder; unless `resumed`, removes what is there.
@@ -201,12 +251,7 @@ impl Store {
         let failed = |source| FolderError::Write { path: self.path.clone(), source };
         if !resumed {
             // the plan first: without it the rest is nothing
-            for removed in [fs::remove_file(self.path.join(PLAN)), fs::remove_dir_all(&self.path)] {
-                match removed {
-                    Err(error) if error.kind() != ErrorKind::NotFound => Err(failed(error))?,
-                    _ => {}
-                }
-            }
+            remove(&self.path, &[PLAN, "case-*.cbor"]).map_err(failed)?;
         }
         fs::create_dir_all(&self.path).map_err(failed)?;
         self.replace(PLAN, document(&self.plan)?.as_bytes()).map_err(failed)?;
@@ -226,36 +271,55 @@ impl Store {
             events: outcome.events.columns().to_vec(),
         };
         let mut bytes = Vec::new();
+        let mark = sealed::mark(&document(&self.plan)?);
         ciborium::into_writer(&head, &mut bytes)
             .and_then(|()| ciborium::into_writer(&(&outcome.curve, &outcome.events), &mut bytes))
             .map_err(|error| io::Error::other(error.to_string()))
-            .and_then(|()| self.replace(&name(case.index), &bytes))
+            .and_then(|()| {
+                sealed::seal(&mut bytes, mark);
+                self.replace(&name(case.index), &bytes)
+            })
+            .or_else(|error| {
+                // somebody may have removed the folder
+                if error.kind() != ErrorKind::NotFound {
+                    return Err(error);
+                }
+                fs::create_dir_all(&self.path)?;
+                self.replace(PLAN, document(&self.plan).map_err(io::Error::other)?.as_bytes())?;
+                self.replace(&name(case.index), &bytes)
+            })
             .map_err(|source| FolderError::Write { path: path.clone(), source })?;
         let Head { record, curve, events, .. } = head;
         Ok(Kept { record, curve, events, path })
     }
 
-    /// Removes what a program that was killed left half written.
-    pub(crate) fn tidy(&self) {
-        for entry in fs::read_dir(&self.path).into_iter().flatten().flatten() {
-            if entry.file_name().to_string_lossy().starts_with(TEMPORARY) {
-                // one that stays does no harm
-                let _ = fs::remove_file(entry.path());
-            }
-        }
-    }
-
     /// Writes a file at once. It need not reach the disk before the next case begins: a killed
     /// program loses nothing that the system has.
     fn replace(&self, name: &str, bytes: &[u8]) -> io::Result<()> {
-        let mut file = tempfile::Builder::new().prefix(TEMPORARY).tempfile_in(&self.path)?;
+        let prefix = temporary::prefix();
+        let mut file = tempfile::Builder::new().prefix(&prefix).tempfile_in(&self.path)?;
         file.write_all(bytes)?;
         file.persist(self.path.join(name)).map_err(|error| error.error)?;
         Ok(())
     }
 }
 
-const TEMPORARY: &str = ".arclen-";
+/// What there is of a case.
+enum Case {
+    /// Nothing.
+    Missing,
+    /// A file that is not what was written.
+    Damaged(PathBuf),
+    /// What is known of it, and what it is recognised by.
+    Whole(Box<Kept>, String),
+}
+
+fn set_aside(path: &Path, damaged: &mut Vec<PathBuf>) -> Result<(), StoreError> {
+    sealed::set_aside(path)
+        .map_err(|source| FolderError::Write { path: path.to_path_buf(), source })?;
+    damaged.push(path.to_path_buf());
+    Ok(())
+}
 
 /// Refuses stores of different sweeps.
 ///
