@@ -3,7 +3,7 @@
 
 use super::elements;
 use super::ends::{Ends, Neutral};
-use super::{AsymmetricModes, Parity};
+use super::{AsymmetricModes, ModeCount, Parity};
 use continuation::Matrix;
 use continuation::linalg::SymmetricBand;
 
@@ -55,6 +55,13 @@ impl AsymmetricModes<'_> {
         self.negative_below(&ends, n, 0.0);
         let (value, x) = self.inverse_iteration(&ends, n, 0.0);
         Mode { n, parity, value, shape: self.shape(&ends, n, &x) }
+    }
+
+    /// The count of a class and its eigenvalue nearest to zero.
+    pub(super) fn count_and_value(&mut self, n: usize, parity: Parity) -> (ModeCount, f64) {
+        let ends = self.ends(n, parity, Neutral::Pinned);
+        let count = self.negative_below(&ends, n, 0.0);
+        (count, self.inverse_iteration(&ends, n, 0.0).0)
     }
 
     /// The mode of smallest eigenvalue of a class; for `n = 1` as in

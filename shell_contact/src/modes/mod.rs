@@ -40,6 +40,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod along;
 mod bound;
 #[cfg(test)]
 mod certify;
@@ -48,6 +49,7 @@ mod eigen;
 mod elements;
 mod ends;
 
+pub use along::{ScanSettings, Scanned, SymmetryBreaking, scan_branch};
 pub use eigen::{Mode, ModeShape};
 
 use crate::contact::{ContactProblem, with_law};

@@ -1,0 +1,61 @@
+//! A whole branch scanned after its trace.
+
+use crate::support::contact;
+use continuation::Settings;
+use shell_contact::modes::{Parity, ScanSettings, scan_branch};
+use shell_contact::{Law, trace_contact};
+use std::ops::ControlFlow;
+
+const SYM: Parity = Parity::Symmetric;
+const ANTI: Parity = Parity::Antisymmetric;
+
+/// Every change of stability of a hard shell under strong adhesion, in the order of the branch,
+/// and no other: no count flickers, folds included.
+#[test]
+fn every_loss_of_symmetry_of_a_hard_shell_is_found_in_order() {
+    let problem = contact(200, Law::Hooke, [3e-5, 3e-3, 2e-3, 1.0 / 30.0, 0.0, 1.07]);
+    let settings = Settings { target: Some(0.815), max_step: Some(0.02), ..Settings::default() };
+    let traced =
+        trace_contact(&problem, 1.15, settings, &mut |_| ControlFlow::Continue(())).unwrap();
+    let branch = &traced.branch;
+    let scanned =
+        scan_branch(&problem, branch, &ScanSettings::default(), &mut |_| ControlFlow::Continue(()))
+            .unwrap();
+    let known = [
+        (0, ANTI, 1, 0, 1.030245113687822, 1e-8),
+        (0, ANTI, 0, 1, 0.818761892820134, 1e-8),
+        (0, ANTI, 1, 0, 0.8730372462143192, 1e-8),
+        (0, ANTI, 0, 1, 0.8218166095879053, 1e-8),
+        (2, ANTI, 0, 1, 0.8704425325991098, 2e-9),
+        (2, SYM, 0, 1, 0.8704334063868676, 2e-9),
+        (3, ANTI, 0, 1, 0.8628902730416855, 2e-9),
+        (3, SYM, 0, 1, 0.8628900930917855, 2e-9),
+        (4, ANTI, 0, 1, 0.8545391707970917, 2e-9),
+        (4, SYM, 0, 1, 0.8545391728337977, 2e-9),
+        (5, ANTI, 0, 1, 0.8454196122525448, 2e-9),
+        (5, SYM, 0, 1, 0.845419613027046, 2e-9),
+        (6, ANTI, 0, 1, 0.8351665931645023, 2e-9),
+        (6, SYM, 0, 1, 0.8351665932189758, 2e-9),
+        (7, ANTI, 0, 1, 0.8233605797759185, 2e-9),
+        (7, SYM, 0, 1, 0.823360579745303, 2e-9),
+    ];
+    // onsets of the two parities come closer to each other than their errors
+    let mut events: Vec<_> = scanned.events.iter().collect();
+    events.sort_by_key(|e| (e.n, e.parity == SYM));
+    assert_eq!(events.len(), known.len());
+    assert!(scanned.missed.is_empty());
+    assert!(scanned.points.iter().all(|scan| scan.certain));
+    for (found, (n, parity, before, after, z0, tolerance)) in events.iter().zip(known) {
+        assert_eq!(
+            (found.n, found.parity, found.modes_before, found.modes_after),
+            (n, parity, before, after)
+        );
+        assert!((found.z0 - z0).abs() < tolerance, "{n} {parity:?}: {} and {z0}", found.z0);
+        assert!(found.error_estimate < 1e-9);
+        let top = found.mode_shape.w.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
+        assert!((top - 1.0).abs() < 1e-12);
+    }
+    assert_eq!(scanned.points.len(), branch.points.len());
+    let last = scanned.points.last().unwrap();
+    assert_eq!((last.antisymmetric, last.modes, last.first_n), (1, 12, Some(2)));
+}
