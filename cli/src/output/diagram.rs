@@ -128,6 +128,11 @@ impl DiagramResult {
     fn points(&self) -> usize {
         self.branches.iter().map(|one| one.trace.points).sum()
     }
+
+    /// Whether all numbers of unstable modes are certain; `None` where there are none.
+    fn certified(&self) -> Option<bool> {
+        self.branches.iter().filter_map(|one| one.trace.certified).reduce(|a, b| a && b)
+    }
 }
 
 /// The JSON, indented, with a newline at the end; NaN and infinities are null.
@@ -152,6 +157,7 @@ impl Serialize for DiagramResult {
         map.serialize_entry("stopped_because", self.stopped_because)?;
         map.serialize_entry("stopped_detail", &self.stopped_detail)?;
         map.serialize_entry("points", &self.points())?;
+        map.serialize_entry("certified", &self.certified())?;
         map.serialize_entry("newton_iterations", &self.newton_iterations)?;
         map.serialize_entry("seconds", &self.seconds)?;
         map.end()

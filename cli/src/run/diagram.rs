@@ -1,5 +1,6 @@
 //! Whole diagrams, of every kind of problem.
 
+use super::form::certified;
 use super::{RunError, contact, general, ring_load, states};
 use crate::case::{ProblemCase, ResolvedCase};
 use crate::output::{BranchRecord, DiagramResult, From, NearRecord, TraceResult};
@@ -311,7 +312,17 @@ fn ending(diagram: &Diagram) -> (&'static str, String) {
                 (1, _) => "one branch ended early; see its own".to_owned(),
                 _ => format!("{count} branches ended early; see theirs"),
             };
-            (if count == 0 { "complete" } else { "incomplete" }, detail)
+            let doubtful = |one: &&DiagramBranch| certified(&one.branch) == Some(false);
+            let doubtful = diagram.branches.iter().filter(doubtful).count();
+            let doubt = match doubtful {
+                0 => String::new(),
+                1 => "; the counts of unstable modes of one branch are not certain".to_owned(),
+                _ => {
+                    format!("; the counts of unstable modes of {doubtful} branches are not certain")
+                }
+            };
+            let word = if count == 0 { "complete" } else { "incomplete" };
+            (word, detail + &doubt)
         }
     }
 }
