@@ -38,6 +38,31 @@ pub(crate) struct ResolvedCase {
     pub(crate) diagram: DiagramCase,
     /// Bounds of the second parameter of a map.
     pub(crate) map: MapCase,
+    /// What a trace of a contact case counts as unstable.
+    pub(crate) stability: StabilityCase,
+}
+
+/// Which unstable modes of a contact state are counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StabilityCase {
+    /// Those that are axisymmetric and mirror images about the equator.
+    Axisymmetric,
+    /// All but torsion.
+    Full {
+        /// Most waves around the axis.
+        max_n: usize,
+    },
+}
+
+impl StabilityCase {
+    /// The names that a case file may use.
+    pub(crate) const NAMES: [&'static str; 2] = ["full", "axisymmetric"];
+}
+
+impl Default for StabilityCase {
+    fn default() -> Self {
+        StabilityCase::Full { max_n: 40 }
+    }
 }
 
 /// What is solved.

@@ -8,6 +8,7 @@ use super::reader::{ANY, Allowed, NOT_NEGATIVE, POSITIVE, Reader, Section};
 use super::{
     CatalogueCase, CatalogueEntry, ContactCase, DeviceCase, DiagramCase, ElementRange, Groups, Law,
     LoadedCase, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
+    StabilityCase,
 };
 use crate::closest::closest;
 use crate::units::{self, Dimension};
@@ -33,6 +34,7 @@ const PATH: &[&str] = &["start", "end", "max_step", "min_step", "max_points", "e
 const DIAGRAM: &[&str] = &["depth", "max_branches", "from", "to", "search"];
 const SEARCH: [&str; 2] = ["near-bifurcations", "none"];
 const MAP: &[&str] = &["from", "to"];
+const STABILITY: &[&str] = &["scan", "max_n"];
 
 /// Where a key may be at home, for those that stand in the wrong table.
 const HOMES: &[(&str, &[&str])] = &[
@@ -44,6 +46,7 @@ const HOMES: &[(&str, &[&str])] = &[
     ("diagram", DIAGRAM),
     ("map", MAP),
     ("device", device::KEYS),
+    ("stability", STABILITY),
 ];
 
 const GAS_EXPONENT: f64 = 1.07;
@@ -133,12 +136,14 @@ impl<'a> Resolver<'a> {
         };
         let diagram = path.as_ref().and_then(|path| self.diagram(path));
         let map = self.map();
+        let stability = self.stability();
         let case = ResolvedCase {
             name: name?,
             problem: problem?,
             path: path?,
             diagram: diagram?,
             map: map?,
+            stability: stability?,
         };
         Some(LoadedCase { case, notes: self.notes })
     }
@@ -162,6 +167,7 @@ impl<'a> Resolver<'a> {
             "diagram",
             "map",
             "device",
+            "stability",
         ];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
@@ -528,6 +534,29 @@ impl<'a> Resolver<'a> {
             }
         };
         Some(DiagramCase { depth: depth?, max_branches: max_branches?, within, search })
+    }
+
+    fn stability(&self) -> Option<StabilityCase> {
+        let section = self.table("stability", STABILITY);
+        let StabilityCase::Full { mut max_n } = StabilityCase::default() else {
+            return Some(StabilityCase::Axisymmetric);
+        };
+        if section.get("max_n").is_some() {
+            max_n = self.reader.count(section, "max_n", 4, 1000)?;
+        }
+        let full = StabilityCase::Full { max_n };
+        let Some(node) = section.get("scan") else { return Some(full) };
+        match self.reader.text(section, "scan")? {
+            word if word == StabilityCase::NAMES[0] => Some(full),
+            word if word == StabilityCase::NAMES[1] => Some(StabilityCase::Axisymmetric),
+            word => {
+                let suggestion = closest(word, StabilityCase::NAMES).map(ToString::to_string);
+                let allowed = StabilityCase::NAMES.iter().map(ToString::to_string).collect();
+                let why = Complaint::UnknownWord { allowed, suggestion };
+                self.reader.refuse(section, "scan", node, why);
+                None
+            }
+        }
     }
 
     fn map(&self) -> Option<MapCase> {

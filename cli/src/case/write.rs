@@ -2,7 +2,7 @@
 
 use super::{
     ContactCase, DiagramCase, Groups, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase,
-    ShellCase,
+    ShellCase, StabilityCase,
 };
 use super::{Law, PhysicalCase, Stiffness};
 use std::fmt::Write as _;
@@ -41,6 +41,9 @@ impl ResolvedCase {
         path(&mut out, &self.path);
         diagram(&mut out, &self.diagram);
         map(&mut out, self.map);
+        if matches!(self.problem, ProblemCase::Contact(_)) {
+            stability(&mut out, self.stability);
+        }
         out.0
     }
 }
@@ -153,6 +156,17 @@ fn map(out: &mut Lines, map: MapCase) {
         if let Some(value) = value {
             out.number(key, value);
         }
+    }
+}
+
+fn stability(out: &mut Lines, stability: StabilityCase) {
+    out.table("stability");
+    match stability {
+        StabilityCase::Full { max_n } => {
+            out.text("scan", StabilityCase::NAMES[0]);
+            out.count("max_n", max_n);
+        }
+        StabilityCase::Axisymmetric => out.text("scan", StabilityCase::NAMES[1]),
     }
 }
 

@@ -1,6 +1,6 @@
 //! `events.json`: special points, why the branch ended, what it cost.
 
-use super::result::{EventRecord, MaxwellRecord, TraceResult};
+use super::result::{EventRecord, MaxwellRecord, StabilityRecord, TraceResult};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// The JSON, indented, with a newline at the end; NaN and infinities are null.
@@ -30,12 +30,31 @@ impl Serialize for Document<'_> {
         if let Some(maxwell) = &result.maxwell {
             map.serialize_entry("maxwell", &maxwell_of(maxwell))?;
         }
+        if let Some(stability) = &result.stability {
+            map.serialize_entry("stability", &StabilityOf(stability))?;
+        }
         map.serialize_entry("stopped_because", &result.stopped_because.to_string())?;
         map.serialize_entry("stopped_detail", &result.stopped_detail)?;
         map.serialize_entry("points", &result.points)?;
         map.serialize_entry("certified", &result.certified)?;
         map.serialize_entry("newton_iterations", &result.newton_iterations)?;
         map.serialize_entry("seconds", &result.seconds)?;
+        map.end()
+    }
+}
+
+/// What was examined.
+struct StabilityOf<'a>(&'a StabilityRecord);
+
+impl Serialize for StabilityOf<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("scan", if self.0.full { "full" } else { "axisymmetric" })?;
+        if self.0.full {
+            map.serialize_entry("max_n", &self.0.max_n)?;
+            map.serialize_entry("certain", &self.0.certain)?;
+            map.serialize_entry("not_located", &self.0.not_located)?;
+        }
         map.end()
     }
 }
@@ -73,6 +92,12 @@ impl Serialize for EventOf<'_> {
         entry(&mut map, "lyapunov", form.lyapunov)?;
         entry(&mut map, "lyapunov_error", form.lyapunov_error)?;
         entry(&mut map, "certified", form.certified)?;
+        if let Some(mode) = &event.mode {
+            map.serialize_entry("n", &mode.n)?;
+            map.serialize_entry("parity", mode.parity)?;
+            map.serialize_entry("modes_before", &mode.before)?;
+            map.serialize_entry("modes_after", &mode.after)?;
+        }
         if !event.observables.is_empty() {
             map.serialize_entry("observables", &Named(&event.observables))?;
         }

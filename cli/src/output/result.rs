@@ -241,6 +241,34 @@ pub(crate) struct EventRecord {
     pub(crate) observables: Vec<(String, f64)>,
     /// What the normal form says.
     pub(crate) form: FormRecord,
+    /// The mode without the branch's symmetries that turns here.
+    pub(crate) mode: Option<ModeRecord>,
+}
+
+/// A mode without the symmetries of its branch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ModeRecord {
+    /// Waves around the axis.
+    pub(crate) n: usize,
+    /// `symmetric` or `antisymmetric` about the equator.
+    pub(crate) parity: &'static str,
+    /// Unstable modes of its class before, along the branch.
+    pub(crate) before: usize,
+    /// And after.
+    pub(crate) after: usize,
+}
+
+/// Which modes the stability of a contact branch was examined for.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct StabilityRecord {
+    /// Whether more than axisymmetric mirror images.
+    pub(crate) full: bool,
+    /// The most waves that were examined.
+    pub(crate) max_n: Option<usize>,
+    /// Whether every count is certain.
+    pub(crate) certain: Option<bool>,
+    /// Changes of a count that are not among the special points.
+    pub(crate) not_located: usize,
 }
 
 /// Two states of equal total potential at one value of the device's parameter.
@@ -301,6 +329,8 @@ pub(crate) struct TraceResult {
     pub(crate) events: Vec<EventRecord>,
     /// Pairs of states of equal potential; `None` where that has no meaning.
     pub(crate) maxwell: Option<Vec<MaxwellRecord>>,
+    /// What its stability was examined for; `None` where that has no meaning.
+    pub(crate) stability: Option<StabilityRecord>,
     /// Why the branch ended.
     pub(crate) stopped_because: StopReason,
     /// The same in a sentence; may be empty.

@@ -13,6 +13,22 @@ pub(crate) fn summary(result: &TraceResult, folder: Option<&Path>) -> String {
     } else {
         out.push_str(&aligned(&event_rows(result)));
     }
+    if let Some(stability) = &result.stability {
+        out.push_str(match (stability.full, stability.certain) {
+            (false, _) => "stability: against axisymmetric mirror images only\n",
+            (true, Some(true)) => "stability: with and without symmetry, torsion left out\n",
+            (true, _) => {
+                "stability: with and without symmetry, torsion left out; not certain at every point\n"
+            }
+        });
+        if stability.not_located > 0 {
+            let _ = writeln!(
+                out,
+                "{} between points, not located",
+                count(stability.not_located, "loss of symmetry lies", "losses of symmetry lie")
+            );
+        }
+    }
     out.push('\n');
     let _ = write!(out, "{}: stopped at {}", result.case, result.stopped_because);
     if !result.stopped_detail.is_empty() {
@@ -59,6 +75,10 @@ fn event_rows(result: &TraceResult) -> Vec<Vec<String>> {
             number(found.map(|(_, value)| *value))
         }));
         row.push(match (event.unstable_before, event.unstable_after) {
+            _ if event.mode.is_some() => event.mode.map_or_else(String::new, |mode| {
+                let (n, parity) = (mode.n, mode.parity);
+                format!("n = {n} {parity}: {} → {}", mode.before, mode.after)
+            }),
             (None, None) => "–".to_string(),
             (before, after) if before == after => modes(before),
             (before, after) => format!("{} → {}", modes(before), modes(after)),

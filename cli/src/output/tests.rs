@@ -39,6 +39,7 @@ pub(crate) fn example() -> TraceResult {
             EventRecord { kind: "pull-off".into(), ..EventRecord::default() },
         ],
         maxwell: None,
+        stability: None,
         stopped_because: StopReason::Target,
         stopped_detail: String::new(),
         points: 2,

@@ -1,10 +1,11 @@
 //! The contact problem: a shell between two plates.
 
 use super::form::{StabilityColumns, certified, form};
+use super::stability::Stability;
 use super::states::of_contact;
 use super::{Observer, RunError, listen, settings};
 use crate::case::{ContactCase, DeviceCase, Law, ResolvedCase};
-use crate::output::{ContactRow, EventRecord, MaxwellRecord, Pictures, Table, TraceResult};
+use crate::output::{Cell, ContactRow, EventRecord, MaxwellRecord, Pictures, Table, TraceResult};
 use crate::pictures::{Curve, Mark, Profile, Shape};
 use continuation::{Point, Problem, Settings, TraceError};
 use shell_contact::device::{MaxwellPoint, StartError, maxwell_points, trace_loaded};
@@ -27,9 +28,11 @@ pub(super) fn run(
     contact: &ContactCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
-    let Traced { problem, branch, maxwell, seconds } = traced(case, contact, observer)?;
-    let pictures = pictures(&case.name, &problem, &branch);
-    Ok(TraceResult { pictures, maxwell: Some(maxwell), ..result(case, &branch, seconds) })
+    let (traced, stability) = scanned(case, contact, observer)?;
+    let Traced { problem, branch, maxwell, seconds } = traced;
+    let pictures = pictures(&case.name, &problem, &branch, &stability);
+    let maxwell = Some(maxwell);
+    Ok(TraceResult { pictures, maxwell, ..examined(case, &branch, seconds, &stability) })
 }
 
 /// The same with the states along the branch.
@@ -38,10 +41,12 @@ pub(super) fn run_reported(
     contact: &ContactCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
-    let Traced { problem, branch, maxwell, seconds } = traced(case, contact, observer)?;
+    let (traced, stability) = scanned(case, contact, observer)?;
+    let Traced { problem, branch, maxwell, seconds } = traced;
     let states = of_contact(&problem, &branch.branch, branch.branch.points.len());
-    let pictures = Pictures { states, ..pictures(&case.name, &problem, &branch) };
-    Ok(TraceResult { pictures, maxwell: Some(maxwell), ..result(case, &branch, seconds) })
+    let pictures = Pictures { states, ..pictures(&case.name, &problem, &branch, &stability) };
+    let maxwell = Some(maxwell);
+    Ok(TraceResult { pictures, maxwell, ..examined(case, &branch, seconds, &stability) })
 }
 
 /// The same without what pictures show.
@@ -71,6 +76,19 @@ fn traced(
     let problem = shell(case, contact)?;
     let (branch, maxwell) = follow(case, device(contact), &problem, observer)?;
     Ok(Traced { problem, branch, maxwell, seconds: clock.elapsed().as_secs_f64() })
+}
+
+/// A traced branch with what is unstable beyond its own counts.
+fn scanned(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    observer: &mut Observer<'_>,
+) -> Result<(Traced, Stability), RunError> {
+    let clock = Instant::now();
+    let mut traced = traced(case, contact, observer)?;
+    let stability = Stability::of(case, &traced.problem, &mut traced.branch, observer);
+    traced.seconds = clock.elapsed().as_secs_f64();
+    Ok((traced, stability))
 }
 
 /// The branch itself under a held plate, and its problem.
@@ -168,7 +186,16 @@ pub(super) fn no_start(case: &ResolvedCase, detail: TraceError) -> RunError {
 
 /// A traced branch as plain numbers, without pictures.
 pub(crate) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) -> TraceResult {
-    let (table, events) = tabulate(traced);
+    examined(case, traced, seconds, &Stability::default())
+}
+
+fn examined(
+    case: &ResolvedCase,
+    traced: &ContactBranch,
+    seconds: f64,
+    stability: &Stability,
+) -> TraceResult {
+    let (table, events) = tabulate(traced, stability);
     let branch = &traced.branch;
     TraceResult {
         case: case.name.clone(),
@@ -182,6 +209,7 @@ pub(crate) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) 
         newton_iterations: branch.statistics.newton_iterations,
         seconds,
         maxwell: None,
+        stability: Some(stability.record()),
         pictures: Pictures::default(),
     }
 }
@@ -262,20 +290,25 @@ pub(super) fn row(traced: &ContactBranch, index: usize, point: &Point) -> Contac
     }
 }
 
-fn tabulate(traced: &ContactBranch) -> (Table, Vec<EventRecord>) {
+fn tabulate(traced: &ContactBranch, scanned: &Stability) -> (Table, Vec<EventRecord>) {
     let branch = &traced.branch;
     let stability = StabilityColumns::of(branch);
     let loaded = branch.parameter != "z0";
     let base = branch.parameter == "base";
     let own = base.then(|| branch.parameter.clone());
-    let mut table = Table::contact().and(own.into_iter().collect()).and(stability.titles());
+    let mut table = Table::contact()
+        .and(own.into_iter().collect())
+        .and(stability.titles())
+        .and(scanned.titles());
     for (index, point) in branch.points.iter().enumerate() {
         let mut cells = row(traced, index, point).cells();
         cells.extend(base.then(|| point.p.into()));
         cells.extend(stability.cells(point));
+        cells.resize(table.columns().len() - scanned.titles().len(), Cell::Empty);
+        cells.extend(scanned.cells(index, point));
         table.push(cells);
     }
-    let events = branch.events.iter().map(|event| {
+    let events = branch.events.iter().enumerate().map(|(k, event)| {
         let at = row(traced, event.point, &branch.points[event.point]);
         EventRecord {
             kind: event.kind.to_string(),
@@ -290,18 +323,24 @@ fn tabulate(traced: &ContactBranch) -> (Table, Vec<EventRecord>) {
             error_estimate: Some(event.error_estimate),
             observables: Vec::new(),
             form: form(branch, event),
+            mode: scanned.mode(branch, k),
         }
     });
     let events = events.collect();
     (table, events)
 }
 
-fn pictures(title: &str, problem: &ContactProblem, traced: &ContactBranch) -> Pictures {
+fn pictures(
+    title: &str,
+    problem: &ContactProblem,
+    traced: &ContactBranch,
+    stability: &Stability,
+) -> Pictures {
     let branch = &traced.branch;
     let rows: Vec<ContactRow> =
         branch.points.iter().enumerate().map(|(i, p)| row(traced, i, p)).collect();
     let unstable: Vec<bool> =
-        branch.points.iter().map(|p| p.unstable.is_some_and(|n| n > 0)).collect();
+        branch.points.iter().enumerate().map(|(i, p)| stability.is_unstable(i, p)).collect();
     let curve = |label: &str, x: &dyn Fn(&ContactRow) -> f64, y: &dyn Fn(&ContactRow) -> f64| {
         let (x, y): (Vec<f64>, Vec<f64>) = rows.iter().map(|r| (x(r), y(r))).unzip();
         let mark = |e: &continuation::Event| Mark {

@@ -140,6 +140,7 @@ pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> Trac
         table,
         events,
         maxwell: None,
+        stability: None,
         stopped_because: branch.stopped.reason,
         stopped_detail: branch.stopped.detail.clone(),
         points: branch.points.len(),

@@ -8,6 +8,7 @@ mod form;
 mod general;
 mod map;
 mod ring_load;
+mod stability;
 mod states;
 mod sweep;
 mod ways;

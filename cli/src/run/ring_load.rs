@@ -188,6 +188,7 @@ pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> Trac
                 .filter_map(|name| Some(((*name).to_owned(), observed(name)?)))
                 .collect(),
             form: form(branch, event),
+            mode: None,
         }
     });
     TraceResult {
@@ -195,6 +196,7 @@ pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> Trac
         parameter: branch.parameter.clone(),
         events: events.collect(),
         maxwell: None,
+        stability: None,
         table,
         stopped_because: branch.stopped.reason,
         stopped_detail: branch.stopped.detail.clone(),
