@@ -226,7 +226,9 @@ fn a_trace_goes_in_the_device_s_parameter() {
     assert_eq!((&folds[0]["unstable_before"], &folds[0]["unstable_after"]), (&0.into(), &1.into()));
     near(&json["maxwell"][0]["base"], 1.179_609_1, 1e-6);
     let (names, rows) = columns(&place.path().join("o/branch.csv"));
-    assert_eq!(names[15..], ["event", "base"]);
+    let stability = ["unstable_antisymmetric", "unstable_modes", "first_n", "stable"];
+    assert_eq!(names[15..17], ["event", "base"]);
+    assert_eq!(names[17..], stability);
     assert_eq!(rows.last().unwrap()[16], "0.75");
     let load = ["device.kind=dead-load", "path.start=0", "path.end=2"];
     let mut trace = vec!["trace", "fig12", "--elements", "100", "--json"];

@@ -142,6 +142,7 @@ fn insert(problem: &ContactProblem, branch: &mut Branch, scanned: Scanned) -> St
                 residual: if known.is_ok() { largest } else { f64::NAN },
                 error_estimate: one.error_estimate,
                 detail: continuation::Detail::default(),
+                eigenvectors: Vec::new(),
             });
             branch.points.push(state);
         }
