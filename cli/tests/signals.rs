@@ -43,11 +43,14 @@ fn stopped(arguments: &[&str], signal: &str, wait: Duration, json: &str) -> Opti
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     let said = format!("{arguments:?} {signal}: {message}");
     assert!(begun.elapsed() < Duration::from_secs(60), "{said}");
+    let text = fs::read_to_string(place.path().join("o").join(json)).unwrap();
     if output.status.code() == Some(0) {
-        return None; // the signal met a run that was done
+        // the signal met a run that was done, and that says so
+        let json: Value = serde_json::from_str(&text).unwrap();
+        assert_ne!(json["stopped_because"], "interrupted", "{said}");
+        return None;
     }
     assert_eq!(output.status.code(), Some(3), "{said}");
-    let text = fs::read_to_string(place.path().join("o").join(json)).unwrap();
     assert!(place.path().join("o/case.toml").is_file() || json == "sweep.json", "{said}");
     Some(serde_json::from_str(&text).unwrap())
 }

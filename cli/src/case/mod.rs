@@ -7,10 +7,12 @@
 mod device;
 pub(crate) mod document;
 pub(crate) mod error;
+pub(crate) mod name;
 mod physical;
 pub(crate) mod reader;
 pub(crate) mod resolve;
 pub(crate) mod source;
+mod stability;
 mod write;
 
 #[cfg(test)]

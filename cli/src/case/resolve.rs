@@ -3,12 +3,13 @@
 use super::device;
 use super::document::Table;
 use super::error::{CaseError, Complaint};
+use super::name::own_name;
 use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
 use super::reader::{ANY, Allowed, NOT_NEGATIVE, POSITIVE, Reader, Section};
+use super::stability;
 use super::{
     CatalogueCase, CatalogueEntry, ContactCase, DeviceCase, DiagramCase, ElementRange, Groups, Law,
     LoadedCase, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
-    StabilityCase,
 };
 use crate::closest::closest;
 use crate::units::{self, Dimension};
@@ -34,7 +35,6 @@ const PATH: &[&str] = &["start", "end", "max_step", "min_step", "max_points", "e
 const DIAGRAM: &[&str] = &["depth", "max_branches", "from", "to", "search"];
 const SEARCH: [&str; 2] = ["near-bifurcations", "none"];
 const MAP: &[&str] = &["from", "to"];
-const STABILITY: &[&str] = &["scan", "max_n"];
 
 /// Where a key may be at home, for those that stand in the wrong table.
 const HOMES: &[(&str, &[&str])] = &[
@@ -46,7 +46,7 @@ const HOMES: &[(&str, &[&str])] = &[
     ("diagram", DIAGRAM),
     ("map", MAP),
     ("device", device::KEYS),
-    ("stability", STABILITY),
+    ("stability", stability::KEYS),
 ];
 
 const GAS_EXPONENT: f64 = 1.07;
@@ -54,8 +54,6 @@ const ELEMENTS: ElementRange = ElementRange { default: 400, least: 8, most: 100_
 const MAX_POINTS: usize = 5000;
 /// Steps shorter than this part of the way are lost in the rounding of the parameter.
 const SHORTEST: f64 = 1e-16;
-/// Names name folders and files; systems allow 255 bytes, of which suffixes take some.
-const LONGEST_NAME: usize = 200;
 
 const POISSON: Allowed =
     Allowed { holds: |x| x > -1.0 && x <= 0.5, words: "greater than -1 and at most 0.5" };
@@ -136,7 +134,7 @@ impl<'a> Resolver<'a> {
         };
         let diagram = path.as_ref().and_then(|path| self.diagram(path));
         let map = self.map();
-        let stability = self.stability();
+        let stability = stability::stability(self.reader, self.table("stability", stability::KEYS));
         let case = ResolvedCase {
             name: name?,
             problem: problem?,
@@ -536,29 +534,6 @@ impl<'a> Resolver<'a> {
         Some(DiagramCase { depth: depth?, max_branches: max_branches?, within, search })
     }
 
-    fn stability(&self) -> Option<StabilityCase> {
-        let section = self.table("stability", STABILITY);
-        let StabilityCase::Full { mut max_n } = StabilityCase::default() else {
-            return Some(StabilityCase::Axisymmetric);
-        };
-        if section.get("max_n").is_some() {
-            max_n = self.reader.count(section, "max_n", 4, 1000)?;
-        }
-        let full = StabilityCase::Full { max_n };
-        let Some(node) = section.get("scan") else { return Some(full) };
-        match self.reader.text(section, "scan")? {
-            word if word == StabilityCase::NAMES[0] => Some(full),
-            word if word == StabilityCase::NAMES[1] => Some(StabilityCase::Axisymmetric),
-            word => {
-                let suggestion = closest(word, StabilityCase::NAMES).map(ToString::to_string);
-                let allowed = StabilityCase::NAMES.iter().map(ToString::to_string).collect();
-                let why = Complaint::UnknownWord { allowed, suggestion };
-                self.reader.refuse(section, "scan", node, why);
-                None
-            }
-        }
-    }
-
     fn map(&self) -> Option<MapCase> {
         let section = self.table("map", MAP);
         let given = |key: &str| match section.get(key) {
@@ -608,28 +583,4 @@ impl<'a> Resolver<'a> {
             Some(_) => self.reader.number(section, key, allowed),
         }
     }
-}
-
-/// The key `name` of a file, if it is there and fit for a folder.
-pub(crate) fn own_name<'a>(reader: &Reader, root: Section<'a>) -> Option<&'a str> {
-    let text = reader.text(root, "name")?;
-    if text == plain_name(text) {
-        return Some(text);
-    }
-    let node = root.get("name")?;
-    let allowed = format!(
-        "a name fit for a folder: no slashes, no dot at its start, at most {LONGEST_NAME} bytes"
-    );
-    reader.refuse(root, "name", node, Complaint::OutOfRange { allowed });
-    None
-}
-
-/// The nearest name that is fit for a folder.
-pub(crate) fn plain_name(text: &str) -> String {
-    let awkward = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':');
-    let mut name = text.trim().trim_start_matches('.').replace(awkward, "_");
-    while name.len() > LONGEST_NAME {
-        name.pop();
-    }
-    if name.is_empty() { "case".to_string() } else { name }
 }

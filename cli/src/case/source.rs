@@ -1,7 +1,8 @@
 //! Where a case comes from: a file, a shipped case, or a problem of the catalogue.
 
 use super::document::{self, Override};
-use super::resolve::{plain_name, resolve};
+use super::name::plain_name;
+use super::resolve::resolve;
 use super::{CatalogueEntry, LoadError, LoadedCase};
 use crate::closest::closest;
 use std::fs::File;

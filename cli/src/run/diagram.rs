@@ -321,7 +321,7 @@ fn ending(diagram: &Diagram) -> (&'static str, String) {
                     format!("; the counts of unstable modes of {doubtful} branches are not certain")
                 }
             };
-            let word = if count == 0 { "complete" } else { "incomplete" };
+            let word = if count == 0 && doubtful == 0 { "complete" } else { "incomplete" };
             (word, detail + &doubt)
         }
     }

@@ -5,8 +5,9 @@ use super::plan::{self, Axis, Plan, Setting};
 use super::shard::Shard;
 use crate::case::document::{self, Node, Origin, Table, Value};
 use crate::case::error::{CaseError, Complaint};
+use crate::case::name::{own_name, plain_name};
 use crate::case::reader::{Reader, Section};
-use crate::case::resolve::{own_name, plain_name, resolve};
+use crate::case::resolve::resolve;
 use crate::case::{
     CatalogueEntry, LoadError, ProblemCase, ResolvedCase, SWEEPS, load as load_case, source,
 };
