@@ -137,6 +137,9 @@ fn class(scan: &Scan, n: usize, parity: Parity) -> ModeCount {
     scan.count(n, parity).unwrap_or(ModeCount { negative: 0, certain: scan.certain })
 }
 
+/// Where in an enclosure a certain count is sought if that in the middle is not.
+const ASIDE: [f64; 4] = [0.25, 0.75, 0.1, 0.9];
+
 /// Two neighbouring points.
 struct Chord<'a> {
     from: &'a [f64],
@@ -256,8 +259,18 @@ impl<'a, F: Potential> Walk<'a, F> {
                 bisect = 0;
                 lo.share + 0.5 * width
             };
-            let middle = self.state(chord, class, share)?;
-            if middle.count == count && middle.certain {
+            let mut middle = self.state(chord, class, share)?;
+            // beside the change a count may be rounding: certain ones on either side enclose it
+            for aside in ASIDE {
+                if middle.certain {
+                    break;
+                }
+                middle = self.state(chord, class, lo.share + aside * width)?;
+            }
+            if !middle.certain {
+                return Some([lo, hi]);
+            }
+            if middle.count == count {
                 lo = middle;
             } else {
                 hi = middle;
