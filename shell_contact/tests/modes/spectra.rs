@@ -82,6 +82,42 @@ fn pressed(mesh: &Mesh, c: &Coefficients, pressure: f64) -> Vec<f64> {
     u
 }
 
+/// Determinant of the second variation of a sphere under external pressure `p` for the spherical
+/// harmonic `l`, in closed form: displacement `(a P_l, b P_l')` along the normal and the meridian
+/// of the sphere contracted by `λ`, `(λ² − 1)/(1 − ν) + p λ = 0`. With `L = l(l + 1)`, the mean
+/// square of `P_l` taken as 1, `M = ∫ e_s e_φ` and `P_l''`, `cot S P_l'` integrated by parts.
+fn determinant(l: usize, p: f64) -> f64 {
+    let order = (l * (l + 1)) as f64;
+    let half = 0.5 * p * (1.0 - NU);
+    let stretch = (half * half + 1.0).sqrt() - half;
+    let form = |a: f64, b: f64| {
+        let (turn, trace) = ((a - b).powi(2), (2.0 * a - b * order).powi(2));
+        let mixed = a * a - a * b * order + 0.5 * b * b * order;
+        let squares = trace - 2.0 * mixed;
+        let strain = stretch * stretch - 1.0;
+        let membrane = (4.0 * stretch * stretch * (squares + 2.0 * NU * mixed)
+            + 2.0 * (1.0 + NU) * strain * (squares + turn * order))
+            / (8.0 * (1.0 - NU * NU));
+        let bending = 0.5 * KB * turn / (stretch * stretch) * order * (order - 1.0 + NU);
+        membrane + bending + p * stretch * (a * a + order * (0.5 * b * b - a * b))
+    };
+    let (aa, bb) = (form(1.0, 0.0), form(0.0, 1.0));
+    let ab = 0.5 * (form(1.0, 1.0) - aa - bb);
+    aa * bb - ab * ab
+}
+
+/// The pressure, in `4√k_b`, at which order `l` buckles.
+fn buckling(l: usize) -> f64 {
+    let unit = 4.0 * KB.sqrt();
+    let (mut lo, mut hi) = (0.5, 1.7);
+    assert!(determinant(l, lo * unit) > 0.0 && determinant(l, hi * unit) < 0.0);
+    while hi - lo > 1e-14 {
+        let middle = 0.5 * (lo + hi);
+        if determinant(l, middle * unit) > 0.0 { lo = middle } else { hi = middle }
+    }
+    lo
+}
+
 /// Zoelly: the pressures of the orders `l` are those of every `n ≤ l` of the right class.
 #[test]
 fn pressed_sphere_buckles_at_zoellys_pressures_for_every_wave_number() {
@@ -95,7 +131,12 @@ fn pressed_sphere_buckles_at_zoellys_pressures_for_every_wave_number() {
         plate: 2.0,
     };
     let unit = 4.0 * KB.sqrt();
-    let orders = [(5, 0.968530), (4, 1.019324), (6, 1.054440), (7, 1.243732)];
+    let orders = [5, 4, 6, 7, 3].map(|l| (l, buckling(l)));
+    // digits of an independent solver
+    for ((_, found), known) in orders.iter().zip([0.968530, 1.019324, 1.054440, 1.243732]) {
+        assert!((found - known).abs() < 6e-7, "{found} and {known}");
+    }
+    assert!((orders[4].1 - 1.295395476).abs() < 1e-9, "{}", orders[4].1);
     let mut modes = AsymmetricModes::new(&mesh);
     let mut total = |share: f64| -> Vec<[usize; 2]> {
         let u = pressed(&mesh, &c, share * unit);
