@@ -2,7 +2,7 @@
 //! product.
 //!
 //! Column `j` holds `A[j..=j + kd, j]` contiguously; `kd` zero columns follow the last one, so
-//! that no loop has a short end. Half-bandwidths up to 8 are compiled with fixed loop lengths.
+//! that no loop has a short end. Half-bandwidths up to 8, and 11, are compiled with fixed loop lengths.
 //! Golub & Van Loan, *Matrix Computations*, 4th ed., sections 4.1.2 and 4.3.
 
 use super::vector::pivot_or_floor;
@@ -29,6 +29,7 @@ macro_rules! by_half_bandwidth {
             6 => $fixed::<6, 7>($($arg),*),
             7 => $fixed::<7, 8>($($arg),*),
             8 => $fixed::<8, 9>($($arg),*),
+            11 => $fixed::<11, 12>($($arg),*),
             kd => $general(kd, $($arg),*),
         }
     };

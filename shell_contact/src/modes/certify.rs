@@ -154,8 +154,8 @@ fn second_differences_of_the_energy_in_space() {
         for n in [1, 2, 3, 5] {
             for parity in Parity::BOTH {
                 let ends = modes.ends(n, parity, Neutral::Kept);
-                let mut k = elements::band(problem.mesh().elements());
-                elements::matrix(&modes.elements, &ends, n, &mut k);
+                modes.matrix(&ends, n);
+                let k = modes.band.clone();
                 let dim = k.dim();
                 let x: Vec<f64> = (0..dim).map(|i| (1.0 + i as f64 * 0.41).sin()).collect();
                 // unit pivots of what the class does not have do not count
@@ -195,8 +195,8 @@ fn without_waves_the_matrix_is_the_half_models() {
     problem.jacobian(&u, &p, &mut hessian).unwrap();
     hessian.clear_rank_one();
     let ends = modes.ends(0, Parity::Symmetric, Neutral::Pinned);
-    let mut k = elements::band(problem.mesh().elements());
-    elements::matrix(&modes.elements, &ends, 0, &mut k);
+    modes.matrix(&ends, 0);
+    let k = &modes.band;
     // w_0, u_1, w_1, …, u_N
     let place = |i: usize| if i % 2 == 1 { 3 * i.div_ceil(2) } else { 3 * (i / 2) + 2 };
     for i in 0..problem.dim() {

@@ -5,7 +5,6 @@ use super::elements;
 use super::ends::{Ends, Neutral};
 use super::{AsymmetricModes, ModeCount, Parity};
 use continuation::Matrix;
-use continuation::linalg::SymmetricBand;
 
 /// Inverse iterations: more are of no use, a cluster then holds any vector of its space.
 const ITERATIONS: usize = 60;
@@ -152,14 +151,13 @@ impl AsymmetricModes<'_> {
         (self.rayleigh(ends, n, &x).unwrap_or(value), x)
     }
 
-    /// `xᵀKx/xᵀMx`, whose error is the square of the vector's.
+    /// `xᵀKx/xᵀMx`, whose error is the square of the vector's. The band's factors are lost.
     fn rayleigh(&mut self, ends: &Ends, n: usize, x: &[f64]) -> Option<f64> {
-        let mut k: SymmetricBand = elements::band(self.elements.len());
-        elements::matrix(&self.elements, ends, n, &mut k);
+        self.matrix(ends, n);
         let mut y = vec![0.0; x.len()];
         self.mass.mul(x, &mut y);
         let mass = dot(x, &y);
-        k.mul(x, &mut y);
+        self.band.mul(x, &mut y);
         let value = dot(x, &y) / mass;
         value.is_finite().then_some(value)
     }

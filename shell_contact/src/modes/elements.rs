@@ -1,10 +1,12 @@
-//! Element matrices of the second variation: assembled once per state, summed up for any `n`.
+//! The matrices of the second variation: assembled once per state, summed up for any `n`.
 //!
 //! Even powers of `n` couple `u` and `w`, and `v` with itself; odd powers couple `v` to the two
-//! others. Each element keeps these blocks by power, so that a wave number costs one weighted sum.
+//! others. An entry is thus `m (a₀ + a₁ n² + a₂ n⁴)`, `m = n` where `v` meets another field and 1
+//! elsewhere. Elements that meet no end condition are summed up to three such bands, whatever the
+//! class; those at the ends are kept one by one.
 
 use super::density::{POWERS, second_variation};
-use super::ends::{Ends, HALF_BANDWIDTH};
+use super::ends::{Ends, FIELDS, HALF_BANDWIDTH, Slot};
 use crate::density::{Coefficients, Site};
 use crate::film::Potential;
 use crate::membrane::Membrane;
@@ -20,16 +22,37 @@ type Block<T> = [[T; 4]; 4];
 const EVEN: [(usize, usize); 4] = [(0, 0), (2, 2), (1, 1), (0, 2)];
 const ODD: [(usize, usize); 2] = [(0, 1), (1, 2)];
 
+/// Rows of a column of the lower band.
+pub(super) const ROWS: usize = HALF_BANDWIDTH + 1;
+
+/// A column of the lower band, from the diagonal downwards.
+pub(super) type Column = [f64; ROWS];
+
+/// Elements next to the pole that its conditions reach.
+const AT_POLE: usize = 3;
+
+/// Elements next to the equator that its conditions reach.
+pub(super) const AT_EQUATOR: usize = 2;
+
+/// The second variation of a state.
+#[derive(Clone, Debug)]
+pub(super) struct Elements {
+    count: usize,
+    pole: [Element; AT_POLE],
+    equator: [Element; AT_EQUATOR],
+    /// All others, by power of `n²`: columns of the unknowns.
+    inside: [Vec<Column>; 3],
+}
+
 /// The blocks of an element.
 #[derive(Clone, Debug)]
-pub(super) struct Element {
+struct Element {
     even: [[Block<f64>; 4]; 3],
     odd: [[Block<f64>; 2]; 2],
 }
 
 impl Element {
-    pub(super) const ZERO: Element =
-        Element { even: [[[[0.0; 4]; 4]; 4]; 3], odd: [[[[0.0; 4]; 4]; 2]; 2] };
+    const ZERO: Element = Element { even: [[[[0.0; 4]; 4]; 4]; 3], odd: [[[[0.0; 4]; 4]; 2]; 2] };
 
     /// The 12×12 matrix for `n`, index `3j + f`.
     fn at(&self, n: f64) -> [[f64; 12]; 12] {
@@ -47,6 +70,91 @@ impl Element {
             put(&mut out, f, g, |i, j| n * (blocks[0][i][j] + n2 * blocks[1][i][j]));
         }
         out
+    }
+
+    /// The factors of `n²ᵏ` in the 12×12 matrix, without those of odd couplings.
+    fn power(&self, k: usize) -> [[f64; 12]; 12] {
+        let mut out = [[0.0; 12]; 12];
+        for (pair, &(f, g)) in EVEN.iter().enumerate() {
+            put(&mut out, f, g, |i, j| self.even[k][pair][i][j]);
+        }
+        if let Some(odd) = self.odd.get(k) {
+            for (pair, &(f, g)) in ODD.iter().enumerate() {
+                put(&mut out, f, g, |i, j| odd[pair][i][j]);
+            }
+        }
+        out
+    }
+}
+
+impl Elements {
+    /// Room for `count` elements.
+    pub(super) fn new(count: usize) -> Elements {
+        let zero = vec![[0.0; ROWS]; FIELDS * (count + 1)];
+        Elements {
+            count,
+            pole: [Element::ZERO; AT_POLE],
+            equator: [Element::ZERO; AT_EQUATOR],
+            inside: [zero.clone(), zero.clone(), zero],
+        }
+    }
+
+    /// Number of elements.
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Sets `out` to the columns for `n` of what meets no end condition.
+    pub(super) fn columns(&self, n: usize, out: &mut [Column]) {
+        let n = n as f64;
+        let n2 = n * n;
+        let factors: [Column; FIELDS] = std::array::from_fn(|f| {
+            std::array::from_fn(|k| if (f == 1) != ((f + k) % FIELDS == 1) { n } else { 1.0 })
+        });
+        let [a, b, c] = &self.inside;
+        for (j, (((out, a), b), c)) in out.iter_mut().zip(a).zip(b).zip(c).enumerate() {
+            let factor = &factors[j % FIELDS];
+            for k in 0..ROWS {
+                out[k] = factor[k] * (a[k] + n2 * (b[k] + n2 * c[k]));
+            }
+        }
+    }
+
+    /// Passes every entry of the lower triangle that the elements next to the pole contribute.
+    pub(super) fn at_pole(&self, ends: &Ends, n: usize, add: &mut impl FnMut(usize, usize, f64)) {
+        for (e, element) in self.pole.iter().enumerate() {
+            scatter(ends, e, &element.at(n as f64), n == 0, add);
+        }
+    }
+
+    /// The same next to the equator.
+    pub(super) fn at_equator(
+        &self,
+        ends: &Ends,
+        n: usize,
+        add: &mut impl FnMut(usize, usize, f64),
+    ) {
+        for (k, element) in self.equator.iter().enumerate() {
+            let e = self.count - AT_EQUATOR + k;
+            scatter(ends, e, &element.at(n as f64), n == 0, add);
+        }
+    }
+
+    fn set(&mut self, e: usize, element: &Element) {
+        if e < AT_POLE {
+            self.pole[e] = element.clone();
+        } else if e + AT_EQUATOR >= self.count {
+            self.equator[e + AT_EQUATOR - self.count] = element.clone();
+        } else {
+            for (k, columns) in self.inside.iter_mut().enumerate() {
+                let local = element.power(k);
+                for (i, column) in columns[FIELDS * (e - 1)..][..12].iter_mut().enumerate() {
+                    for (entry, value) in column.iter_mut().zip(&local[i][i..]) {
+                        *entry += value;
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -69,12 +177,13 @@ pub(super) fn assemble<L: Membrane, F: Potential>(
     film: &F,
     c: &Coefficients,
     excess: f64,
-    out: &mut [Element],
+    out: &mut Elements,
 ) {
     let mut hessian = [[[Lanes::ZERO; 9]; 9]; POWERS];
     let mut lanes = [[Lanes::ZERO; 4]; 4];
-    for (e, element) in out.iter_mut().enumerate() {
-        *element = Element::ZERO;
+    out.inside.iter_mut().for_each(|columns| columns.fill([0.0; ROWS]));
+    for e in 0..out.count {
+        let mut element = Element::ZERO;
         let local = mesh.local(u, e);
         for cell in mesh.cells(e) {
             let site = Site { weight: cell.weight, area: cell.weight * cell.sin, csc: cell.csc };
@@ -93,6 +202,7 @@ pub(super) fn assemble<L: Membrane, F: Potential>(
                 }
             }
         }
+        out.set(e, &element);
     }
 }
 
@@ -118,14 +228,28 @@ fn add(lanes: &Block<Lanes>, out: &mut Block<f64>) {
     }
 }
 
-/// Sets `out` to the matrix of the class `ends` at `n`; unknowns that the class does not have get
-/// a unit pivot.
-pub(super) fn matrix(elements: &[Element], ends: &Ends, n: usize, out: &mut SymmetricBand) {
+/// Sets `out` to the matrix of the class `ends` at `n`, with `columns` for scratch; unknowns that
+/// the class does not have get a unit pivot.
+pub(super) fn matrix(
+    elements: &Elements,
+    ends: &Ends,
+    n: usize,
+    columns: &mut [Column],
+    out: &mut SymmetricBand,
+) {
     out.set_zero();
-    for (e, element) in elements.iter().enumerate() {
-        scatter(ends, e, &element.at(n as f64), n == 0, out);
+    elements.columns(n, columns);
+    for (j, column) in columns.iter().enumerate().take(out.dim()) {
+        // without waves there is no v: what couples it to others has the factor n
+        if n > 0 || j % FIELDS != 1 {
+            let to = out.column_mut(j);
+            to.copy_from_slice(&column[..to.len()]);
+        }
     }
-    unit_pivots(ends, elements.len(), n == 0, out);
+    let mut add = |i, j, value| out.add(i, j, value);
+    elements.at_pole(ends, n, &mut add);
+    elements.at_equator(ends, n, &mut add);
+    unit_pivots(ends, 0..=elements.count, n == 0, &mut add);
 }
 
 /// Sets `out` to the mass matrix `∫(u² + v² + w²) sin S dS` of the class.
@@ -144,36 +268,29 @@ pub(super) fn mass(mesh: &Mesh, ends: &Ends, n: usize, out: &mut SymmetricBand) 
                 }
             }
         }
-        scatter(ends, e, &local, n == 0, out);
+        scatter(ends, e, &local, n == 0, &mut |i, j, value| out.add(i, j, value));
     }
 }
 
+/// Passes the entries of an element's matrix, end conditions applied.
 fn scatter(
     ends: &Ends,
     e: usize,
     local: &[[f64; 12]; 12],
     without_v: bool,
-    out: &mut SymmetricBand,
+    add: &mut impl FnMut(usize, usize, f64),
 ) {
-    if ends.is_interior(e) && !without_v {
-        for column in 0..12 {
-            let entries = out.column_mut(3 * (e - 1) + column);
-            for (entry, value) in entries[..12 - column].iter_mut().zip(&local[column][column..]) {
-                *entry += value;
-            }
-        }
-        return;
-    }
-    let slot = |k: usize| ends.slot(k % 3, e as isize - 1 + (k / 3) as isize);
-    for a in 0..12 {
-        for b in 0..12 {
-            if without_v && (a % 3 == 1 || b % 3 == 1) {
+    let slots: [Slot; 12] =
+        std::array::from_fn(|k| ends.slot(k % FIELDS, e as isize - 1 + (k / FIELDS) as isize));
+    for (a, slot_a) in slots.iter().enumerate() {
+        for (b, slot_b) in slots.iter().enumerate() {
+            if without_v && (a % FIELDS == 1 || b % FIELDS == 1) {
                 continue;
             }
-            for &(i, ci) in slot(a).terms() {
-                for &(j, cj) in slot(b).terms() {
+            for &(i, ci) in slot_a.terms() {
+                for &(j, cj) in slot_b.terms() {
                     if i >= j {
-                        out.add(i, j, ci * cj * local[a][b]);
+                        add(i, j, ci * cj * local[a][b]);
                     }
                 }
             }
@@ -181,14 +298,20 @@ fn scatter(
     }
 }
 
-fn unit_pivots(ends: &Ends, elements: usize, without_v: bool, out: &mut SymmetricBand) {
-    for j in 0..=elements {
-        for f in 0..3 {
-            let own = 3 * j + f;
+/// Passes a unit pivot for each unknown of the knots `at` that the class does not have.
+pub(super) fn unit_pivots(
+    ends: &Ends,
+    at: impl Iterator<Item = usize>,
+    without_v: bool,
+    add: &mut impl FnMut(usize, usize, f64),
+) {
+    for j in at {
+        for f in 0..FIELDS {
+            let own = FIELDS * j + f;
             let absent = without_v && f == 1;
             let has = ends.slot(f, j as isize).terms().first().is_some_and(|t| t.0 == own);
             if absent || !has {
-                out.add(own, own, 1.0);
+                add(own, own, 1.0);
             }
         }
     }
@@ -196,5 +319,5 @@ fn unit_pivots(ends: &Ends, elements: usize, without_v: bool, out: &mut Symmetri
 
 /// A zero band for `elements` elements.
 pub(super) fn band(elements: usize) -> SymmetricBand {
-    SymmetricBand::new(3 * (elements + 1), HALF_BANDWIDTH)
+    SymmetricBand::new(FIELDS * (elements + 1), HALF_BANDWIDTH)
 }

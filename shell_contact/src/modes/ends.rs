@@ -22,6 +22,9 @@
 use super::Parity;
 use crate::spline::Knots;
 
+/// Fields of a mode: `u, v, w`.
+pub(super) const FIELDS: usize = 3;
+
 /// Half-bandwidth of the three interleaved fields.
 pub(super) const HALF_BANDWIDTH: usize = 11;
 
@@ -119,11 +122,6 @@ impl Ends {
             // an absent field has no unknowns inside either, but nothing is coupled to it there
             Slot::new(&[(3 * j as usize + f, 1.0)])
         }
-    }
-
-    /// Whether all coefficients of element `e` are unknowns: `3(e − 1), …, 3(e + 2) + 2`.
-    pub(super) fn is_interior(&self, e: usize) -> bool {
-        e >= 3 && e + 3 < self.elements
     }
 }
 

@@ -48,6 +48,7 @@ mod density;
 mod eigen;
 mod elements;
 mod ends;
+mod inertia;
 
 pub use along::{ScanSettings, Scanned, SymmetryBreaking, scan_branch};
 pub use eigen::{Mode, ModeShape};
@@ -60,8 +61,9 @@ use crate::membrane::Membrane;
 use crate::meridian::Mesh;
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix};
-use elements::Element;
+use elements::Elements;
 use ends::{Ends, Neutral};
+use inertia::Elimination;
 
 /// Pivots below this, relative to the diagonal of the scaled matrix, are rounding: a few
 /// hundred units of the last place, as many as terms are summed into a pivot of half-bandwidth 11.
@@ -142,7 +144,8 @@ impl Scan {
 #[derive(Debug, Clone)]
 pub struct AsymmetricModes<'a> {
     mesh: &'a Mesh,
-    elements: Vec<Element>,
+    elements: Elements,
+    elimination: Elimination,
     band: SymmetricBand,
     mass: SymmetricBand,
     scale: Vec<f64>,
@@ -155,7 +158,8 @@ impl<'a> AsymmetricModes<'a> {
         let band = elements::band(mesh.elements());
         AsymmetricModes {
             mesh,
-            elements: vec![Element::ZERO; mesh.elements()],
+            elements: Elements::new(mesh.elements()),
+            elimination: Elimination::new(mesh.elements()),
             mass: band.clone(),
             scale: vec![1.0; band.dim()],
             band,
@@ -209,6 +213,20 @@ impl<'a> AsymmetricModes<'a> {
         self.negative_below(&ends, n, 0.0)
     }
 
+    /// The numbers of unstable modes of `n ≥ 1`, symmetric and antisymmetric.
+    fn counts(&mut self, n: usize) -> [ModeCount; 2] {
+        let ends = Parity::BOTH.map(|parity| self.ends(n, parity, Neutral::Pinned));
+        let found = self.elimination.negative(&self.elements, ends.each_ref(), n);
+        let mut counts = [ModeCount::default(); 2];
+        for k in 0..2 {
+            counts[k] = match found[k] {
+                Some(negative) => ModeCount { negative, certain: true },
+                None => self.negative_below(&ends[k], n, 0.0),
+            };
+        }
+        counts
+    }
+
     /// Examines every class up to the bound and `MARGIN` beyond, further while the last are not
     /// stable, never beyond `max_n`.
     pub fn scan(&mut self, max_n: usize) -> Scan {
@@ -229,7 +247,7 @@ impl<'a> AsymmetricModes<'a> {
         let mut n = 0;
         while n < max_n && (n < wanted || safe < MARGIN) {
             n += 1;
-            let counts = Parity::BOTH.map(|parity| self.count(n, parity));
+            let counts = self.counts(n);
             let negative = counts[0].negative + counts[1].negative;
             let certain = counts[0].certain && counts[1].certain;
             safe = if negative == 0 && certain { safe + 1 } else { 0 };
@@ -248,9 +266,14 @@ impl<'a> AsymmetricModes<'a> {
         Ends::new(self.mesh.knots(), n, parity, neutral)
     }
 
+    /// Sets the band to `K_n` of a class.
+    fn matrix(&mut self, ends: &Ends, n: usize) {
+        elements::matrix(&self.elements, ends, n, &mut self.elimination.columns, &mut self.band);
+    }
+
     /// Factors `K_n − shift M`, scaled to a unit diagonal, and counts.
     fn negative_below(&mut self, ends: &Ends, n: usize, shift: f64) -> ModeCount {
-        elements::matrix(&self.elements, ends, n, &mut self.band);
+        self.matrix(ends, n);
         if shift != 0.0 {
             elements::mass(self.mesh, ends, n, &mut self.mass);
             self.band.axpy(-shift, &self.mass);
