@@ -160,7 +160,7 @@ fn second_differences_of_the_energy_in_space() {
                 let x: Vec<f64> = (0..dim).map(|i| (1.0 + i as f64 * 0.41).sin()).collect();
                 // unit pivots of what the class does not have do not count
                 let mut mass = elements::band(problem.mesh().elements());
-                elements::mass(problem.mesh(), &ends, n, &mut mass);
+                modes.masses.matrix(&ends, n, &mut mass);
                 let x: Vec<f64> =
                     (0..dim).map(|i| if mass.get(i, i) == 0.0 { 0.0 } else { x[i] }).collect();
                 let mut y = vec![0.0; dim];
@@ -205,4 +205,40 @@ fn without_waves_the_matrix_is_the_half_models() {
             close(k.get(place(i), place(j)), hessian.get(i, j), 1e-13, 1e-13 * size);
         }
     }
+}
+
+/// One elimination for both parities finds the inertia that each matrix has by itself.
+#[test]
+fn the_shared_elimination_counts_what_each_matrix_has() {
+    let problem = problem(Law::Hooke);
+    let mut modes = AsymmetricModes::new(problem.mesh());
+    let mut unstable = 0;
+    // the rougher the state, the more modes are unstable
+    for size in [1.0, 4.0, 8.0] {
+        let u: Vec<f64> = state(problem.dim()).iter().map(|u| size * u).collect();
+        modes.assemble(&problem, &u, &problem.parameters_at(1.4)).unwrap();
+        for n in 1..9 {
+            let ends = Parity::BOTH.map(|parity| modes.ends(n, parity, Neutral::Pinned));
+            let both = modes.elimination.negative(&modes.elements, ends.each_ref(), n);
+            for (ends, found) in ends.iter().zip(both) {
+                modes.matrix(ends, n);
+                let dim = modes.band.dim();
+                let mut dense = continuation::linalg::Dense::new(dim);
+                dense.set_zero();
+                for i in 0..dim {
+                    for j in 0..dim {
+                        dense.set(i, j, modes.band.get(i, j));
+                    }
+                }
+                let spectrum = dense.eigenvalues().unwrap();
+                let negative = spectrum.iter().filter(|(re, _)| *re < 0.0).count();
+                unstable += negative;
+                if let Some(found) = found {
+                    assert_eq!(found, negative, "n = {n}, {size}");
+                }
+                assert_eq!(modes.negative_below(ends, n, 0.0).negative, negative);
+            }
+        }
+    }
+    assert!(unstable > 20, "{unstable}");
 }

@@ -1,13 +1,15 @@
 //! Eigenvalues `K_n x = μ M x` with the mass `∫(u² + v² + w²) sin S dS`: `μ` is in `χ/R0²` per
 //! undeformed area and comparable between wave numbers.
 
-use super::elements;
 use super::ends::{Ends, Neutral};
 use super::{AsymmetricModes, ModeCount, Parity};
 use continuation::Matrix;
 
 /// Inverse iterations: more are of no use, a cluster then holds any vector of its space.
 const ITERATIONS: usize = 60;
+
+/// What a vector to begin with gets of one without any symmetry, relative to its largest entry.
+const BESIDE: f64 = 1e-3;
 
 /// Relative change of an eigenvalue at which the iteration ends.
 const SETTLED: f64 = 1e-13;
@@ -52,15 +54,27 @@ impl AsymmetricModes<'_> {
     pub fn nearest_zero(&mut self, n: usize, parity: Parity) -> Mode {
         let ends = self.ends(n, parity, Neutral::Pinned);
         self.negative_below(&ends, n, 0.0);
-        let (value, x) = self.inverse_iteration(&ends, n, 0.0);
+        let mut x = Vec::new();
+        let value = self.inverse_iteration(&ends, n, 0.0, &mut x);
         Mode { n, parity, value, shape: self.shape(&ends, n, &x) }
     }
 
-    /// The count of a class and its eigenvalue nearest to zero.
-    pub(super) fn count_and_value(&mut self, n: usize, parity: Parity) -> (ModeCount, f64) {
+    /// The count of a class and its eigenvalue nearest to zero, whose mode `x` becomes; the search
+    /// begins with what `x` was, unless it is empty.
+    pub(super) fn count_and_value(
+        &mut self,
+        n: usize,
+        parity: Parity,
+        x: &mut Vec<f64>,
+    ) -> (ModeCount, f64) {
         let ends = self.ends(n, parity, Neutral::Pinned);
         let count = self.negative_below(&ends, n, 0.0);
-        (count, self.inverse_iteration(&ends, n, 0.0).0)
+        (count, self.inverse_iteration(&ends, n, 0.0, x))
+    }
+
+    /// The amplitudes of a mode found by `count_and_value`.
+    pub(super) fn shape_of(&self, n: usize, parity: Parity, x: &[f64]) -> ModeShape {
+        self.shape(&self.ends(n, parity, Neutral::Pinned), n, x)
     }
 
     /// The mode of smallest eigenvalue of a class; for `n = 1` as in
@@ -106,7 +120,9 @@ impl AsymmetricModes<'_> {
         }
         let shift = 0.5 * (lo + hi);
         self.negative_below(ends, n, shift);
-        Some(self.inverse_iteration(ends, n, shift))
+        let mut x = Vec::new();
+        let value = self.inverse_iteration(ends, n, shift, &mut x);
+        Some((value, x))
     }
 
     /// The number of eigenvalues below a shift near `wanted`: where the elimination without
@@ -125,30 +141,39 @@ impl AsymmetricModes<'_> {
         })
     }
 
-    /// The eigenpair nearest to `shift`, at which the matrix has just been factored.
-    fn inverse_iteration(&mut self, ends: &Ends, n: usize, shift: f64) -> (f64, Vec<f64>) {
-        elements::mass(self.mesh, ends, n, &mut self.mass);
+    /// The eigenpair nearest to `shift`, at which the matrix has just been factored; begins with
+    /// the vector `x`, unless it is empty, and leaves the mode in it.
+    fn inverse_iteration(&mut self, ends: &Ends, n: usize, shift: f64, x: &mut Vec<f64>) -> f64 {
+        self.masses.matrix(ends, n, &mut self.mass);
         let dim = self.band.dim();
         // any vector without symmetry; M keeps it to the unknowns of the class
         let start = |i: usize| 1.0 + ((i * 7919) % 1009) as f64 / 1009.0;
-        let mut x: Vec<f64> = (0..dim).map(start).collect();
+        // some of it in any case: the mode that was nearest to zero may have been another
+        let largest = x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let known = x.len() == dim && largest > 0.0 && largest.is_finite();
+        let share = if known { BESIDE * largest } else { 1.0 };
+        if !known {
+            x.clear();
+            x.resize(dim, 0.0);
+        }
+        x.iter_mut().enumerate().for_each(|(i, x)| *x += share * start(i));
         let mut y = vec![0.0; dim];
         let mut value = f64::NAN;
         for _ in 0..ITERATIONS {
-            self.mass.mul(&x, &mut y);
-            let size = dot(&x, &y).sqrt();
+            self.mass.mul(x, &mut y);
+            let size = dot(x, &y).sqrt();
             y.iter_mut().for_each(|y| *y /= size);
             x.copy_from_slice(&y);
-            self.solve(&mut x);
+            self.solve(x);
             // y = Mx̂ of unit size: 1/(μ − shift) = yᵀ K⁻¹ y
-            let next = shift + 1.0 / (dot(&x, &y));
+            let next = shift + 1.0 / (dot(x, &y));
             let settled = (next - value).abs() <= SETTLED * (next.abs() + shift.abs());
             value = next;
             if settled {
                 break;
             }
         }
-        (self.rayleigh(ends, n, &x).unwrap_or(value), x)
+        self.rayleigh(ends, n, x).unwrap_or(value)
     }
 
     /// `xᵀKx/xᵀMx`, whose error is the square of the vector's. The band's factors are lost.

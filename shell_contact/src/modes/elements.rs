@@ -189,17 +189,19 @@ pub(super) fn assemble<L: Membrane, F: Potential>(
             let site = Site { weight: cell.weight, area: cell.weight * cell.sin, csc: cell.csc };
             let place = cell.place(&local);
             second_variation(law, film, c, excess, &site, &place, &mut hessian);
-            for k in 0..3 {
-                for (pair, &(f, g)) in EVEN.iter().enumerate() {
+            for (pair, &(f, g)) in EVEN.iter().enumerate() {
+                for k in 0..2 {
                     block(cell, &hessian[2 * k], f, g, &mut lanes);
                     add(&lanes, &mut element.even[k][pair]);
                 }
+                values(cell, hessian[4][f][g], &mut lanes);
+                add(&lanes, &mut element.even[2][pair]);
             }
-            for k in 0..2 {
-                for (pair, &(f, g)) in ODD.iter().enumerate() {
-                    block(cell, &hessian[2 * k + 1], f, g, &mut lanes);
-                    add(&lanes, &mut element.odd[k][pair]);
-                }
+            for (pair, &(f, g)) in ODD.iter().enumerate() {
+                block(cell, &hessian[1], f, g, &mut lanes);
+                add(&lanes, &mut element.odd[0][pair]);
+                values(cell, hessian[3][f][g], &mut lanes);
+                add(&lanes, &mut element.odd[1][pair]);
             }
         }
         out.set(e, &element);
@@ -218,6 +220,18 @@ fn block(cell: &Cell, h: &[[Lanes; 9]; 9], f: usize, g: usize, out: &mut Block<L
         }
         for i in 0..4 {
             out[i][j] = n[0][i] * half[0] + n[1][i] * half[1] + n[2][i] * half[2];
+        }
+    }
+}
+
+/// The same where no derivative takes part: so it is for `n³` and `n⁴`.
+#[inline(never)]
+fn values(cell: &Cell, h: Lanes, out: &mut Block<Lanes>) {
+    let n = &cell.basis[0];
+    for j in 0..4 {
+        let half = h * n[j];
+        for i in 0..4 {
+            out[i][j] = n[i] * half;
         }
     }
 }
@@ -252,23 +266,52 @@ pub(super) fn matrix(
     unit_pivots(ends, 0..=elements.count, n == 0, &mut add);
 }
 
-/// Sets `out` to the mass matrix `∫(u² + v² + w²) sin S dS` of the class.
-pub(super) fn mass(mesh: &Mesh, ends: &Ends, n: usize, out: &mut SymmetricBand) {
-    out.set_zero();
-    for e in 0..mesh.elements() {
-        let mut local = [[0.0; 12]; 12];
-        for cell in mesh.cells(e) {
-            let area = cell.weight * cell.sin;
-            for i in 0..4 {
-                for j in 0..4 {
-                    let m = (area * cell.basis[0][i] * cell.basis[0][j]).sum();
-                    for f in 0..3 {
-                        local[3 * i + f][3 * j + f] += m;
+/// The mass `∫(u² + v² + w²) sin S dS` by element, which no state changes.
+#[derive(Clone, Debug)]
+pub(super) struct Masses {
+    /// Functions by functions, the same for each field.
+    elements: Vec<Block<f64>>,
+}
+
+impl Masses {
+    /// The masses of a mesh.
+    pub(super) fn new(mesh: &Mesh) -> Masses {
+        let of = |e: usize| {
+            let mut local = [[0.0; 4]; 4];
+            for cell in mesh.cells(e) {
+                let area = cell.weight * cell.sin;
+                for i in 0..4 {
+                    for j in 0..4 {
+                        local[i][j] += (area * cell.basis[0][i] * cell.basis[0][j]).sum();
                     }
                 }
             }
+            local
+        };
+        Masses { elements: (0..mesh.elements()).map(of).collect() }
+    }
+
+    /// Sets `out` to the mass matrix of the class.
+    pub(super) fn matrix(&self, ends: &Ends, n: usize, out: &mut SymmetricBand) {
+        out.set_zero();
+        for (e, local) in self.elements.iter().enumerate() {
+            if e >= AT_POLE && e + AT_EQUATOR < self.elements.len() {
+                for j in 0..4 {
+                    for f in (0..FIELDS).filter(|&f| n > 0 || f != 1) {
+                        let column = out.column_mut(FIELDS * (e - 1 + j) + f);
+                        for i in j..4 {
+                            column[FIELDS * (i - j)] += local[i][j];
+                        }
+                    }
+                }
+                continue;
+            }
+            let mut all = [[0.0; 12]; 12];
+            for f in 0..FIELDS {
+                put(&mut all, f, f, |i, j| local[i][j]);
+            }
+            scatter(ends, e, &all, n == 0, &mut |i, j, value| out.add(i, j, value));
         }
-        scatter(ends, e, &local, n == 0, &mut |i, j, value| out.add(i, j, value));
     }
 }
 

@@ -49,6 +49,7 @@ mod eigen;
 mod elements;
 mod ends;
 mod inertia;
+mod locate;
 
 pub use along::{ScanSettings, Scanned, SymmetryBreaking, scan_branch};
 pub use eigen::{Mode, ModeShape};
@@ -61,7 +62,7 @@ use crate::membrane::Membrane;
 use crate::meridian::Mesh;
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix};
-use elements::Elements;
+use elements::{Elements, Masses};
 use ends::{Ends, Neutral};
 use inertia::Elimination;
 
@@ -147,6 +148,7 @@ pub struct AsymmetricModes<'a> {
     elements: Elements,
     elimination: Elimination,
     band: SymmetricBand,
+    masses: Masses,
     mass: SymmetricBand,
     scale: Vec<f64>,
     bound: f64,
@@ -160,6 +162,7 @@ impl<'a> AsymmetricModes<'a> {
             mesh,
             elements: Elements::new(mesh.elements()),
             elimination: Elimination::new(mesh.elements()),
+            masses: Masses::new(mesh),
             mass: band.clone(),
             scale: vec![1.0; band.dim()],
             band,
@@ -275,7 +278,7 @@ impl<'a> AsymmetricModes<'a> {
     fn negative_below(&mut self, ends: &Ends, n: usize, shift: f64) -> ModeCount {
         self.matrix(ends, n);
         if shift != 0.0 {
-            elements::mass(self.mesh, ends, n, &mut self.mass);
+            self.masses.matrix(ends, n, &mut self.mass);
             self.band.axpy(-shift, &self.mass);
         }
         // a congruence keeps the inertia, and pivots of very unequal rows become comparable
