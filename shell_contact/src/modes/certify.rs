@@ -214,7 +214,7 @@ fn the_shared_elimination_counts_what_each_matrix_has() {
     let mut modes = AsymmetricModes::new(problem.mesh());
     let mut unstable = 0;
     // the rougher the state, the more modes are unstable
-    for size in [1.0, 4.0, 8.0] {
+    for size in [1.0, 4.0, 6.0, 8.0, 12.0] {
         let u: Vec<f64> = state(problem.dim()).iter().map(|u| size * u).collect();
         modes.assemble(&problem, &u, &problem.parameters_at(1.4)).unwrap();
         for n in 1..9 {
@@ -230,15 +230,14 @@ fn the_shared_elimination_counts_what_each_matrix_has() {
                         dense.set(i, j, modes.band.get(i, j));
                     }
                 }
-                let spectrum = dense.eigenvalues().unwrap();
-                let negative = spectrum.iter().filter(|(re, _)| *re < 0.0).count();
-                unstable += negative;
+                let (negative, _) = dense.symmetric_inertia().unwrap();
                 if let Some(found) = found {
                     assert_eq!(found, negative, "n = {n}, {size}");
+                    unstable += negative;
                 }
                 assert_eq!(modes.negative_below(ends, n, 0.0).negative, negative);
             }
         }
     }
-    assert!(unstable > 20, "{unstable}");
+    assert!(unstable > 15, "{unstable}");
 }

@@ -1,9 +1,9 @@
 //! A whole branch scanned after its trace.
 
-use crate::support::contact;
+use crate::support::{contact, with_poisson};
 use continuation::Settings;
-use shell_contact::modes::{Parity, ScanSettings, scan_branch};
-use shell_contact::{Law, trace_contact};
+use shell_contact::modes::{Parity, ScanSettings, Scanned, scan_branch};
+use shell_contact::{ContactProblem, Law, trace_contact};
 use std::ops::ControlFlow;
 
 const SYM: Parity = Parity::Symmetric;
@@ -87,4 +87,76 @@ fn an_uncertain_count_beside_an_onset_is_no_event() {
         assert_eq!(own.len(), known.len(), "{own:?}");
         assert!(own.iter().zip(known).all(|(z, k)| (z - k).abs() < 3e-7), "{own:?}");
     }
+}
+
+/// Onsets of one class along a scanned branch, from a plate distance on.
+fn onsets(scanned: &Scanned, class: (usize, Parity), below: f64) -> Vec<(usize, usize, f64)> {
+    let own = scanned.events.iter().filter(|e| (e.n, e.parity) == class && e.z0 < below);
+    own.map(|e| (e.modes_before, e.modes_after, e.z0)).collect()
+}
+
+fn scan(problem: &ContactProblem, range: (f64, f64)) -> Scanned {
+    let go_on = ControlFlow::Continue(());
+    let settings = Settings { target: Some(range.1), max_step: Some(0.01), ..Settings::default() };
+    let traced = trace_contact(problem, range.0, settings, &mut |_| go_on).unwrap();
+    scan_branch(problem, &traced.branch, &ScanSettings::default(), &mut |_| go_on).unwrap()
+}
+
+/// Deep dimples between strongly adhesive plates: more and more waves, and two waves no longer.
+#[test]
+fn deep_dimples_of_a_hard_shell_with_strong_adhesion() {
+    let problem = contact(200, Law::Hooke, [3e-5, 3e-3, 2e-3, 1.0 / 30.0, 0.0, 1.07]);
+    let scanned = scan(&problem, (1.15, 0.6448));
+    assert!(scanned.missed.is_empty());
+    let known = [
+        (0, ANTI, 1, 0, 0.7779228617006498),
+        (8, SYM, 0, 1, 0.8092669858915581),
+        (8, ANTI, 0, 1, 0.8092669859310249),
+        (9, SYM, 0, 1, 0.786042636709196),
+        (9, ANTI, 0, 1, 0.7860426368760105),
+        (10, SYM, 0, 1, 0.7427079184681704),
+        (10, ANTI, 0, 1, 0.7427079192584815),
+        (2, ANTI, 1, 0, 0.7296262784277104),
+        (2, SYM, 1, 0, 0.7286241415986777),
+        (11, SYM, 0, 1, 0.6957011170538544),
+        (11, ANTI, 0, 1, 0.6957011189889445),
+        (12, SYM, 0, 1, 0.6498912343859915),
+        (12, ANTI, 0, 1, 0.6498912376422338),
+    ];
+    for (n, parity, before, after, z0) in known {
+        let found = onsets(&scanned, (n, parity), 0.815);
+        assert_eq!(found.len(), 1, "n = {n} {parity:?}: {found:?}");
+        assert_eq!((found[0].0, found[0].1), (before, after), "n = {n} {parity:?}");
+        assert!((found[0].2 - z0).abs() < 2e-9, "n = {n} {parity:?}: {} and {z0}", found[0].2);
+    }
+    let deep = scanned.events.iter().filter(|e| e.z0 < 0.815).count();
+    assert_eq!(deep, known.len());
+}
+
+/// Onsets of six and more waves, where the rim of a single dimple wrinkles further.
+#[test]
+fn deep_dimples_of_hard_shells_with_weak_adhesion() {
+    let problem = contact(200, Law::Hooke, [3e-5, 3e-3, 2e-6, 1.0 / 30.0, 0.0, 1.07]);
+    let scanned = scan(&problem, (1.06, 0.7199));
+    for (n, z0) in [(6, 0.7568005346643839), (7, 0.7251185559512794)] {
+        let found = onsets(&scanned, (n, SYM), 2.0);
+        assert_eq!(found.len(), 1, "n = {n}: {found:?}");
+        assert!((found[0].2 - z0).abs() < 3e-9, "n = {n}: {} and {z0}", found[0].2);
+    }
+    // R/h = 100 in vacuum
+    let bending = 0.01_f64.powi(2) / (12.0 * (1.0 - 0.09));
+    let problem = with_poisson(200, Law::Hooke, 0.3, [bending, 0.0, 5e-8, 2e-3, 0.0, 0.0]);
+    let scanned = scan(&problem, (1.012, 0.778));
+    let known = [
+        (6, 0.8566778349850628),
+        (7, 0.8369828378936203),
+        (8, 0.8142839957761273),
+        (9, 0.7899170889188666),
+    ];
+    for (n, z0) in known {
+        let found = onsets(&scanned, (n, SYM), 2.0);
+        assert_eq!(found.len(), 1, "n = {n}: {found:?}");
+        assert!((found[0].2 - z0).abs() < 3e-9, "n = {n}: {} and {z0}", found[0].2);
+    }
+    assert!(scanned.events.iter().all(|e| e.n != 1), "the material's rotation is counted");
 }

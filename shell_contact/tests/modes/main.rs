@@ -6,5 +6,6 @@
 mod support;
 
 mod along;
+mod flicker;
 mod onsets;
 mod spectra;

@@ -135,3 +135,28 @@ fn thin_hard_shell() {
     expect(&found, (1, ANTI), &[], 0.0);
     expect(&found, (5, SYM), &[(0, 1, 0.8697848249582948)], 1e-9);
 }
+
+/// The shell of Fig. 7, soft and with weak adhesion, loses its equatorial symmetry outside pull-off
+/// and nothing else down to deep dimples.
+#[test]
+fn soft_shell_with_weak_adhesion() {
+    let problem =
+        contact(200, Law::MooneyRivlin { b: 1.0 }, [2.7e-3, 3.0, 2e-3, 1.0 / 30.0, 0.0, 1.07]);
+    let mut classes = vec![(0, ANTI)];
+    classes.extend((1..=8).flat_map(|n| [(n, SYM), (n, ANTI)]));
+    let found = onsets(&problem, (1.2, 0.612), &classes);
+    expect(&found, (0, ANTI), &[(1, 0, 1.0517484574897358)], 1e-9);
+    assert_eq!(found.len(), 1, "{found:?}");
+}
+
+/// A thick hard shell (`R/h = 25`) in vacuum keeps its symmetry under the plate.
+#[test]
+fn thick_hard_shell() {
+    let bending = 0.04_f64.powi(2) / (12.0 * (1.0 - 0.09));
+    let problem = with_poisson(200, Law::Hooke, 0.3, [bending, 0.0, 8e-7, 8e-3, 0.0, 0.0]);
+    let mut classes = vec![(0, ANTI)];
+    classes.extend((1..=12).flat_map(|n| [(n, SYM), (n, ANTI)]));
+    let found = onsets(&problem, (1.048, 0.5985), &classes);
+    expect(&found, (0, ANTI), &[(1, 0, 1.0080307631144052)], 1e-9);
+    assert_eq!(found.len(), 1, "{found:?}");
+}

@@ -82,6 +82,28 @@ fn pressed(mesh: &Mesh, c: &Coefficients, pressure: f64) -> Vec<f64> {
     u
 }
 
+/// A drop: where surface tension is everything, modes along the normal have `γ(l − 1)(l + 2)`. The
+/// shell adds `2(1 + ν)/(1 − ν²)`, its resistance to a change of area, and less.
+#[test]
+fn sphere_under_much_surface_tension_oscillates_as_a_drop() {
+    let gamma = 100.0;
+    let problem = with_poisson(100, Law::Hooke, NU, [KB, 0.4, 0.0, 0.05, gamma, 1.3]);
+    let mut modes = AsymmetricModes::new(problem.mesh());
+    modes.assemble(&problem, &problem.initial_state(), &problem.parameters_at(1.5)).unwrap();
+    for (n, l, parity) in [
+        (1, 2.0, Parity::Antisymmetric),
+        (2, 2.0, Parity::Symmetric),
+        (0, 3.0, Parity::Antisymmetric),
+    ] {
+        let drop = gamma * (l - 1.0) * (l + 2.0) + 2.0 / (1.0 - NU);
+        // tangential modes are as many as wavelengths allow, 20 apart
+        let found = modes.spectrum(n, parity, 32).unwrap();
+        let nearest = found.iter().map(|x| x - drop).min_by(|a, b| a.abs().total_cmp(&b.abs()));
+        assert!(nearest.unwrap().abs() < 0.2, "n = {n}, l = {l}: {nearest:?}");
+        assert!(*found.last().unwrap() > drop, "{}", found.last().unwrap());
+    }
+}
+
 /// Determinant of the second variation of a sphere under external pressure `p` for the spherical
 /// harmonic `l`, in closed form: displacement `(a P_l, b P_l')` along the normal and the meridian
 /// of the sphere contracted by `λ`, `(λ² − 1)/(1 − ν) + p λ = 0`. With `L = l(l + 1)`, the mean
