@@ -40,7 +40,7 @@ pub(crate) struct ResolvedCase {
     pub(crate) diagram: DiagramCase,
     /// Bounds of the second parameter of a map.
     pub(crate) map: MapCase,
-    /// What a trace of a contact case counts as unstable.
+    /// What a trace or a diagram of a contact case counts as unstable.
     pub(crate) stability: StabilityCase,
 }
 

@@ -51,7 +51,13 @@ pub(super) fn report(
         })
         .collect();
     let parameter = branches.first().map_or("", |(_, branch)| &branch.parameter);
-    page(title, subtitle, parameter, &lines, 0)
+    let mut subtitle = subtitle.to_owned();
+    if branches.iter().any(|(_, branch)| branch.stability.is_some_and(|s| !s.full)) {
+        let separator = if subtitle.is_empty() { "" } else { "; " };
+        subtitle += separator;
+        subtitle += "stability against axisymmetric modes only";
+    }
+    page(title, &subtitle, parameter, &lines, 0)
 }
 
 /// The page for a cycle: both ways and the complete branch, of which the states are given.
@@ -191,7 +197,10 @@ fn curve(line: &Line<'_>) -> Curve {
     };
     let marks = table.words("event").enumerate().map(|(k, (point, kind))| {
         let event = line.events.get(k).filter(|event| event.kind == kind);
-        let unstable = event.map(|event| [event.unstable_before, event.unstable_after]);
+        // where symmetry is lost these do not change: the page takes what its neighbours have
+        let unstable = event
+            .filter(|event| event.mode.is_none())
+            .map(|event| [event.unstable_before, event.unstable_after]);
         Mark { point, kind: kind.to_owned(), unstable }
     });
     let flag: Vec<bool> = table.words(FLAG).map(|(_, word)| word == "true").collect();
@@ -205,16 +214,21 @@ fn curve(line: &Line<'_>) -> Curve {
             .filter(shown)
             .map(|name| (name.clone(), table.numbers(name)))
             .collect(),
-        unstable: table
-            .numbers("unstable")
-            .iter()
-            .map(|n| if n.is_finite() { *n as i32 } else { -1 })
-            .collect(),
+        unstable: unstable(table),
         marks: marks.collect(),
         flags: known.then(|| (FLAG.to_owned(), flag)).into_iter().collect(),
         jumps: line.jumps.to_vec(),
         states: line.states.to_vec(),
     }
+}
+
+/// Unstable modes of every point, of all kinds that were counted; −1 where that is not known.
+fn unstable(table: &Table) -> Vec<i32> {
+    let mut total = table.numbers("unstable");
+    for kind in ["unstable_antisymmetric", "unstable_modes"] {
+        total.iter_mut().zip(table.numbers(kind)).for_each(|(total, n)| *total += n);
+    }
+    total.iter().map(|n| if n.is_finite() { *n as i32 } else { -1 }).collect()
 }
 
 #[cfg(test)]
@@ -243,6 +257,11 @@ mod tests {
             assert_eq!(values.as_array().unwrap().len(), result.table.rows().len(), "{name}");
         }
         assert_eq!((&data["selected"], &data["bounds"]), (&0.into(), &"plates".into()));
+        // what was left out is said
+        let stability = crate::output::StabilityRecord::default();
+        let result = TraceResult { stability: Some(stability), ..result };
+        let other = report("fig12", "why", &[("branch".to_owned(), &result)]).unwrap();
+        assert!(other.contains("why; stability against axisymmetric modes only"));
         let kinds = result.table.rows().iter().filter(|row| row[15] != crate::output::Cell::Empty);
         assert_eq!(curve["marks"].as_array().unwrap().len(), kinds.count());
     }

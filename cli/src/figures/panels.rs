@@ -124,7 +124,7 @@ fn along(traced: &Traced, x: Abscissa, y: &dyn Fn(usize) -> f64) -> Curve {
         x: points.iter().map(|q| traced.abscissa(x, q.p)).collect(),
         y: (0..points.len()).map(y).collect(),
         unstable: points.iter().map(|q| q.unstable.is_some_and(|n| n > 0)).collect(),
-        marks: Vec::new(),
+        ..Curve::default()
     }
 }
 

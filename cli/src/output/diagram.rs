@@ -1,7 +1,7 @@
 //! `diagram.json`: the branches of a diagram, how they hang together, and the table for people.
 
-use super::events::EventOf;
-use super::result::TraceResult;
+use super::events::{EventOf, StabilityOf};
+use super::result::{StabilityRecord, TraceResult};
 use super::summary::{aligned, count};
 use crate::pictures::Curve;
 use continuation::StopReason;
@@ -129,6 +129,12 @@ impl DiagramResult {
         self.branches.iter().map(|one| one.trace.points).sum()
     }
 
+    /// What the stability of all branches was examined for; `None` where that has no meaning.
+    fn stability(&self) -> Option<StabilityRecord> {
+        let records = self.branches.iter().filter_map(|one| one.trace.stability);
+        records.reduce(|all, one| all.and(&one))
+    }
+
     /// Whether all numbers of unstable modes are certain; `None` where there are none.
     fn certified(&self) -> Option<bool> {
         self.branches.iter().filter_map(|one| one.trace.certified).reduce(|a, b| a && b)
@@ -158,6 +164,9 @@ impl Serialize for DiagramResult {
         map.serialize_entry("stopped_detail", &self.stopped_detail)?;
         map.serialize_entry("points", &self.points())?;
         map.serialize_entry("certified", &self.certified())?;
+        if let Some(stability) = &self.stability() {
+            map.serialize_entry("stability", &StabilityOf(stability))?;
+        }
         map.serialize_entry("newton_iterations", &self.newton_iterations)?;
         map.serialize_entry("seconds", &self.seconds)?;
         map.end()
@@ -190,6 +199,9 @@ impl Serialize for BranchOf<'_> {
         map.serialize_entry("stopped_detail", &trace.stopped_detail)?;
         map.serialize_entry("points", &trace.points)?;
         map.serialize_entry("certified", &trace.certified)?;
+        if let Some(stability) = &trace.stability {
+            map.serialize_entry("stability", &StabilityOf(stability))?;
+        }
         map.serialize_entry("newton_iterations", &trace.newton_iterations)?;
         map.end()
     }
@@ -250,6 +262,9 @@ pub(crate) fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> 
         ]);
     }
     let mut out = aligned(&rows);
+    if let Some(stability) = result.stability() {
+        out.push_str(&stability.text());
+    }
     out.push('\n');
     out.push_str(&nearly(result));
     let _ = write!(out, "{}: {}", result.case, result.stopped_because);

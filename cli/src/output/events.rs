@@ -44,7 +44,7 @@ impl Serialize for Document<'_> {
 }
 
 /// What was examined.
-struct StabilityOf<'a>(&'a StabilityRecord);
+pub(super) struct StabilityOf<'a>(pub(super) &'a StabilityRecord);
 
 impl Serialize for StabilityOf<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -1,5 +1,6 @@
 //! A traced branch as plain numbers, free of solver and problem.
 
+use super::summary::count;
 use crate::pictures::{Curve, Profile, Shape};
 use continuation::StopReason;
 use serde::{Deserialize, Serialize};
@@ -269,6 +270,35 @@ pub(crate) struct StabilityRecord {
     pub(crate) certain: Option<bool>,
     /// Changes of a count that are not among the special points.
     pub(crate) not_located: usize,
+}
+
+impl StabilityRecord {
+    /// What was examined, in sentences.
+    pub(super) fn text(&self) -> String {
+        let mut text = match (self.full, self.certain) {
+            (false, _) => "stability: against axisymmetric mirror images only\n",
+            (true, Some(true)) => "stability: with and without symmetry, torsion left out\n",
+            (true, _) => {
+                "stability: with and without symmetry, torsion left out; not certain at every point\n"
+            }
+        }
+        .to_owned();
+        if self.not_located > 0 {
+            let number = count(self.not_located, "loss of symmetry lies", "losses of symmetry lie");
+            text += &format!("{number} between points, not located\n");
+        }
+        text
+    }
+
+    /// The same of several branches.
+    pub(super) fn and(self, other: &StabilityRecord) -> StabilityRecord {
+        StabilityRecord {
+            full: self.full && other.full,
+            max_n: self.max_n.max(other.max_n),
+            certain: self.certain.zip(other.certain).map(|(a, b)| a && b),
+            not_located: self.not_located + other.not_located,
+        }
+    }
 }
 
 /// Two states of equal total potential at one value of the device's parameter.

@@ -14,20 +14,7 @@ pub(crate) fn summary(result: &TraceResult, folder: Option<&Path>) -> String {
         out.push_str(&aligned(&event_rows(result)));
     }
     if let Some(stability) = &result.stability {
-        out.push_str(match (stability.full, stability.certain) {
-            (false, _) => "stability: against axisymmetric mirror images only\n",
-            (true, Some(true)) => "stability: with and without symmetry, torsion left out\n",
-            (true, _) => {
-                "stability: with and without symmetry, torsion left out; not certain at every point\n"
-            }
-        });
-        if stability.not_located > 0 {
-            let _ = writeln!(
-                out,
-                "{} between points, not located",
-                count(stability.not_located, "loss of symmetry lies", "losses of symmetry lie")
-            );
-        }
+        out.push_str(&stability.text());
     }
     out.push('\n');
     let _ = write!(out, "{}: stopped at {}", result.case, result.stopped_because);

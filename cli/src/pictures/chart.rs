@@ -1,7 +1,7 @@
 //! One chart: axes, lines, markers, and a legend beside them that covers nothing.
 
 use super::axis::Axis;
-use super::data::{Mark, drawable};
+use super::data::{Mark, Stability, drawable};
 use super::palette::{FAINT, Form, GRID, form};
 use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
@@ -18,6 +18,37 @@ pub(crate) struct DrawError {
     pub(crate) detail: String,
 }
 
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stroke {
+    /// Without gaps.
+    Solid,
+    /// In dashes.
+    Dashed,
+    /// In dots.
+    Dotted,
+}
+
+impl Stroke {
+    /// The stroke of what is stable, or not.
+    pub(super) fn of(stability: Stability) -> Stroke {
+        match stability {
+            Stability::Stable => Stroke::Solid,
+            Stability::Asymmetric => Stroke::Dotted,
+            Stability::Unstable => Stroke::Dashed,
+        }
+    }
+
+    /// Lengths of a dash and of the gap after it.
+    fn pattern(self) -> Option<(i32, i32)> {
+        match self {
+            Stroke::Solid => None,
+            Stroke::Dashed => Some((7 * PX, 5 * PX)),
+            Stroke::Dotted => Some((2 * PX, 3 * PX)),
+        }
+    }
+}
+
 /// A line through points.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Line {
@@ -27,8 +58,8 @@ pub(super) struct Line {
     pub(super) color: RGBColor,
     /// Its width in pixels.
     pub(super) width: u32,
-    /// Solid or dashed.
-    pub(super) dashed: bool,
+    /// Solid or not.
+    pub(super) stroke: Stroke,
 }
 
 /// A coloured rectangle, in the units of the axes' labels.
@@ -49,8 +80,8 @@ pub(super) enum Entry {
     Line {
         /// Its colour.
         color: RGBColor,
-        /// Solid or dashed.
-        dashed: bool,
+        /// Solid or not.
+        stroke: Stroke,
         /// What it stands for.
         label: String,
     },
@@ -65,6 +96,11 @@ pub(super) enum Entry {
     Marker {
         /// Kind of special point.
         kind: String,
+    },
+    /// Words alone.
+    Note {
+        /// The words.
+        label: String,
     },
 }
 
@@ -97,9 +133,6 @@ const TITLE: i32 = 30 * PX;
 const ROW: i32 = 24 * PX;
 /// Width of a digit in the labels of ticks.
 const DIGIT: i32 = 9 * PX;
-/// Length of a dash, and of the gap after it.
-const DASH: i32 = 7 * PX;
-const GAP: i32 = 5 * PX;
 const FONT: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 const INK: RGBColor = RGBColor(30, 30, 30);
 
@@ -158,6 +191,7 @@ impl Chart {
         let longest = self.legend.iter().map(|entry| match entry {
             Entry::Line { label, .. } | Entry::Tile { label, .. } => label.chars().count(),
             Entry::Marker { kind } => kind.chars().count(),
+            Entry::Note { label } => label.chars().count(),
         });
         longest.max().map_or(0, |chars| 62 * PX + 8 * PX * chars as i32)
     }
@@ -231,13 +265,14 @@ impl Chart {
         for (row, entry) in self.legend.iter().enumerate() {
             let y = top + ROW * row as i32;
             let label = match entry {
-                Entry::Line { color, dashed, label } => {
+                Entry::Line { color, stroke, label } => {
                     let points = [(left, y), (left + 34 * PX, y)];
                     let style = color.stroke_width(2 * PX as u32);
-                    if *dashed {
-                        root.draw(&DashedPathElement::new(points, DASH, GAP, style))?;
-                    } else {
-                        root.draw(&PathElement::new(points, style))?;
+                    match stroke.pattern() {
+                        Some((dash, gap)) => {
+                            root.draw(&DashedPathElement::new(points, dash, gap, style))?;
+                        }
+                        None => root.draw(&PathElement::new(points, style))?,
                     }
                     label
                 }
@@ -250,6 +285,7 @@ impl Chart {
                     draw_marker(root, form(kind), (left + 17 * PX, y))?;
                     kind
                 }
+                Entry::Note { label } => label,
             };
             let style = text(15).pos(Pos::new(HPos::Left, VPos::Center));
             root.draw(&Text::new(label.clone(), (left + 44 * PX, y), style))?;
@@ -268,10 +304,12 @@ fn draw_line(plot: &Plot<'_>, line: &Line) -> Outcome {
     match line.points.as_slice() {
         [] => {}
         [point] => plot.draw(&Circle::new(*point, 3 * PX, line.color.filled()))?,
-        points if line.dashed => {
-            plot.draw(&DashedPathElement::new(points.iter().copied(), DASH, GAP, style))?;
-        }
-        points => plot.draw(&PathElement::new(points.to_vec(), style))?,
+        points => match line.stroke.pattern() {
+            Some((dash, gap)) => {
+                plot.draw(&DashedPathElement::new(points.iter().copied(), dash, gap, style))?;
+            }
+            None => plot.draw(&PathElement::new(points.to_vec(), style))?,
+        },
     }
     Ok(())
 }

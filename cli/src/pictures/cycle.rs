@@ -1,7 +1,7 @@
 //! The pictures of a cycle: the loop with its jumps as arrows, and the shapes before and after each.
 
 use super::axis::Axis;
-use super::chart::{Chart, DrawError, Entry, Line};
+use super::chart::{Chart, DrawError, Entry, Line, Stroke};
 use super::data::{Curve, Shape, drawable};
 use super::draw::{DISTANCE, FORCE, WIDE, curve_lines, shapes, values};
 use super::palette::{Color, FAINT, of_state};
@@ -58,7 +58,7 @@ fn hysteresis(cycle: &CyclePictures) -> Result<String, DrawError> {
     let (way_in, way_out, leap) = (of_state(1), of_state(2), of_state(3));
     let complete = curve_lines(&cycle.complete, FAINT, units);
     let (unstable, mut lines): (Vec<Line>, Vec<Line>) =
-        complete.into_iter().partition(|line| line.dashed);
+        complete.into_iter().partition(|line| line.stroke != Stroke::Solid);
     // where both ways are one, the way out is a rim
     for (curve, color, width) in [(&cycle.retract, way_out, 4), (&cycle.approach, way_in, 2)] {
         lines.extend(curve_lines(curve, color, units).into_iter().map(|l| Line { width, ..l }));
@@ -83,10 +83,10 @@ fn hysteresis(cycle: &CyclePictures) -> Result<String, DrawError> {
             (b.0 - size.1 * dx / scale.0, b.1 - size.1 * dy / scale.1)
         };
         if shaft {
-            lines.push(Line { points: vec![a, b], color, width: 2, dashed: false });
+            lines.push(Line { points: vec![a, b], color, width: 2, stroke: Stroke::Solid });
         }
         let points = vec![corner(HEAD, HALF), b, corner(HEAD, -HALF)];
-        lines.push(Line { points, color, width: 2, dashed: false });
+        lines.push(Line { points, color, width: 2, stroke: Stroke::Solid });
     };
     for (curve, color) in [(&cycle.retract, way_out), (&cycle.approach, way_in)] {
         if let Some((from, to)) = far_along(curve, scale, units) {
@@ -96,7 +96,10 @@ fn hysteresis(cycle: &CyclePictures) -> Result<String, DrawError> {
     for (from, to) in &cycle.jumps {
         arrow(*from, *to, leap, true);
     }
-    let line = |color, dashed, label: &str| Entry::Line { color, dashed, label: label.to_owned() };
+    let line = |color, dashed, label: &str| {
+        let stroke = if dashed { Stroke::Dashed } else { Stroke::Solid };
+        Entry::Line { color, stroke, label: label.to_owned() }
+    };
     let mut legend = vec![line(way_in, false, "approach"), line(way_out, false, "retract")];
     if !cycle.jumps.is_empty() {
         legend.push(line(FAINT, false, "not visited"));

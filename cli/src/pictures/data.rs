@@ -2,6 +2,41 @@
 
 use std::ops::Range;
 
+/// What a state is unstable to.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum Stability {
+    /// Nothing that was examined.
+    #[default]
+    Stable,
+    /// Modes without the symmetries of the state, and no others.
+    Asymmetric,
+    /// Modes with its symmetries.
+    Unstable,
+}
+
+impl Stability {
+    /// From whether modes with the symmetries of the state are unstable, and whether others are.
+    pub(crate) fn of(unstable: bool, asymmetric: bool) -> Stability {
+        match (unstable, asymmetric) {
+            (true, _) => Stability::Unstable,
+            (false, true) => Stability::Asymmetric,
+            (false, false) => Stability::Stable,
+        }
+    }
+}
+
+/// Which modes were examined for stability.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum Examined {
+    /// All that the problem has.
+    #[default]
+    All,
+    /// Of a shell, axisymmetric mirror images.
+    Axisymmetric,
+    /// Of a shell, those and the others.
+    AxisymmetricAndOthers,
+}
+
 /// A curve along a branch.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Curve {
@@ -11,8 +46,13 @@ pub(crate) struct Curve {
     pub(crate) x: Vec<f64>,
     /// Ordinates.
     pub(crate) y: Vec<f64>,
-    /// Whether the state is unstable; missing entries count as stable.
+    /// Whether the state is unstable to modes with its own symmetries; missing entries count as
+    /// stable.
     pub(crate) unstable: Vec<bool>,
+    /// Whether it is unstable to modes without them; missing entries count as stable.
+    pub(crate) asymmetric: Vec<bool>,
+    /// What both know.
+    pub(crate) examined: Examined,
     /// Special points on it.
     pub(crate) marks: Vec<Mark>,
 }
@@ -39,8 +79,8 @@ pub(crate) struct Shape {
     pub(crate) z: Vec<f64>,
     /// Height of the plate, in R0; NaN without one.
     pub(crate) plate: f64,
-    /// Whether the state is unstable.
-    pub(crate) unstable: bool,
+    /// Whether the state is stable.
+    pub(crate) stability: Stability,
 }
 
 /// A quantity along a deformed meridian.
@@ -53,8 +93,8 @@ pub(crate) struct Profile {
     pub(crate) sigma: Vec<f64>,
     /// The quantity.
     pub(crate) value: Vec<f64>,
-    /// Whether the state is unstable.
-    pub(crate) unstable: bool,
+    /// Whether the state is stable.
+    pub(crate) stability: Stability,
 }
 
 /// Whether a number can be drawn.
@@ -67,8 +107,8 @@ pub(super) fn drawable(value: f64) -> bool {
 pub(super) struct Stretch {
     /// Its points.
     pub(super) points: Range<usize>,
-    /// Whether it is unstable.
-    pub(super) unstable: bool,
+    /// Which.
+    pub(super) stability: Stability,
 }
 
 impl Curve {
@@ -77,14 +117,20 @@ impl Curve {
         self.x.len().min(self.y.len())
     }
 
-    /// Whether the state at a point is unstable.
-    fn is_unstable(&self, at: usize) -> bool {
-        self.unstable.get(at).copied().unwrap_or(false)
+    /// What the state at a point is unstable to.
+    fn stability(&self, at: usize) -> Stability {
+        let holds = |flags: &[bool]| flags.get(at).copied().unwrap_or(false);
+        Stability::of(holds(&self.unstable), holds(&self.asymmetric))
+    }
+
+    /// Whether any stretch that can be drawn has this stability.
+    pub(super) fn has(&self, stability: Stability) -> bool {
+        self.stretches().iter().any(|stretch| stretch.stability == stability)
     }
 
     /// Whether any point that can be drawn is unstable.
     pub(super) fn has_unstable(&self) -> bool {
-        self.stretches().iter().any(|stretch| stretch.unstable)
+        self.has(Stability::Unstable) || self.has(Stability::Asymmetric)
     }
 
     /// The stretches of the curve. Neighbours of different stability share the point between
@@ -101,25 +147,24 @@ impl Curve {
             let end = (at..self.len()).find(|&i| !good(i)).unwrap_or(self.len());
             let mut start = at;
             for i in at + 1..end.saturating_sub(1) {
-                let unstable = self.segment_unstable(i - 1);
-                if self.segment_unstable(i) != unstable {
-                    stretches.push(Stretch { points: start..i + 1, unstable });
+                let stability = self.segment(i - 1);
+                if self.segment(i) != stability {
+                    stretches.push(Stretch { points: start..i + 1, stability });
                     start = i;
                 }
             }
-            let unstable =
-                if end - at > 1 { self.segment_unstable(end - 2) } else { self.is_unstable(at) };
-            stretches.push(Stretch { points: start..end, unstable });
+            let stability = if end - at > 1 { self.segment(end - 2) } else { self.stability(at) };
+            stretches.push(Stretch { points: start..end, stability });
             at = end;
         }
         stretches
     }
 
-    /// Whether the segment after a point is unstable. Where its ends differ, a special point is
+    /// The stability of the segment after a point. Where its ends differ, a special point is
     /// the end at which stability changes, and the segment goes with the other; without one it
     /// goes with its first end.
-    fn segment_unstable(&self, at: usize) -> bool {
-        let (first, second) = (self.is_unstable(at), self.is_unstable(at + 1));
+    fn segment(&self, at: usize) -> Stability {
+        let (first, second) = (self.stability(at), self.stability(at + 1));
         if first == second {
             return first;
         }
@@ -143,7 +188,22 @@ mod tests {
     }
 
     fn spans(curve: &Curve) -> Vec<(usize, usize, bool)> {
-        curve.stretches().into_iter().map(|s| (s.points.start, s.points.end, s.unstable)).collect()
+        let unstable = |s: &Stretch| s.stability == Stability::Unstable;
+        let stretches = curve.stretches();
+        stretches.iter().map(|s| (s.points.start, s.points.end, unstable(s))).collect()
+    }
+
+    #[test]
+    fn what_is_unstable_without_symmetry_only_is_a_stretch_of_its_own() {
+        let (f, t) = (false, true);
+        let mut c = curve(&[0.0; 6], &[f, f, f, f, t, t]);
+        c.asymmetric = vec![f, f, t, t, t, t];
+        // the loss of symmetry at 2 and the fold at 4
+        c.marks = [2.0, 4.0].map(|x| Mark { kind: "any".into(), x, y: 0.0 }).to_vec();
+        let found: Vec<_> = c.stretches().into_iter().map(|s| (s.points, s.stability)).collect();
+        let (stable, broken) = (Stability::Stable, Stability::Asymmetric);
+        assert_eq!(found, [(0..3, stable), (2..5, broken), (4..6, Stability::Unstable)]);
+        assert!(c.has(broken) && c.has_unstable());
     }
 
     #[test]

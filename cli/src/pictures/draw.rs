@@ -1,9 +1,9 @@
 //! What each picture shows.
 
 use super::axis::Axis;
-use super::chart::{Chart, DrawError, Entry, Line};
-use super::data::{Curve, Mark, Profile, Shape, drawable};
-use super::palette::{FAINT, of_quantity, of_state};
+use super::chart::{Chart, DrawError, Entry, Line, Stroke};
+use super::data::{Curve, Examined, Mark, Profile, Shape, Stability, drawable};
+use super::palette::{Color, FAINT, of_quantity, of_state};
 use crate::case::document::shown;
 
 pub(super) const FORCE: &str = "force F/√(χ k_b)";
@@ -53,13 +53,10 @@ pub(super) fn branches(
         if deepest > 0 {
             let label =
                 if level == 0 { "first branch".to_owned() } else { format!("depth {level}") };
-            entries.push(Entry::Line { color, dashed: false, label });
+            entries.push(Entry::Line { color, stroke: Stroke::Solid, label });
         }
     }
-    if all.iter().any(Curve::has_unstable) {
-        let label = "unstable".to_string();
-        entries.push(Entry::Line { color: FAINT, dashed: true, label });
-    }
+    entries.extend(stability_entries(&all, FAINT));
     entries.extend(markers);
     Chart { title: shown(title), x, y, lines, marks, legend: entries, size: WIDE }.svg()
 }
@@ -74,11 +71,10 @@ pub(super) fn film_pressure(title: &str, profiles: &[Profile]) -> Result<String,
         let curve = Curve {
             x: profile.sigma.clone(),
             y: profile.value.clone(),
-            unstable: vec![profile.unstable; profile.sigma.len()],
-            ..Curve::default()
+            ..of_one_state(profile.stability, profile.sigma.len())
         };
         lines.extend(curve_lines(&curve, of_state(at), (x.unit, y.unit)));
-        legend.push(state_entry(at, &profile.label, profile.unstable));
+        legend.push(state_entry(at, &profile.label, profile.stability));
     }
     let title = shown(title);
     Chart { title, x, y, lines, marks: Vec::new(), legend, size: WIDE }.svg()
@@ -106,7 +102,7 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
             .collect(),
         color: FAINT,
         width: 1,
-        dashed: true,
+        stroke: Stroke::Dashed,
     }];
     let mut legend = Vec::new();
     for (at, shape) in shapes.iter().enumerate() {
@@ -115,20 +111,19 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
             let curve = Curve {
                 x: shape.sigma.iter().map(|sigma| right * sigma).collect(),
                 y: shape.z.iter().map(|z| up * z).collect(),
-                unstable: vec![shape.unstable; shape.sigma.len()],
-                ..Curve::default()
+                ..of_one_state(shape.stability, shape.sigma.len())
             };
             lines.extend(curve_lines(&curve, color, units));
         }
         for plate in [shape.plate, -shape.plate].into_iter().filter(|z| drawable(*z)) {
             let ends = [-0.97 * wide, 0.97 * wide];
             let points = ends.map(|end| (end / units.0, plate / units.1)).to_vec();
-            lines.push(Line { points, color, width: 1, dashed: false });
+            lines.push(Line { points, color, width: 1, stroke: Stroke::Solid });
         }
-        legend.push(state_entry(at, &shape.label, shape.unstable));
+        legend.push(state_entry(at, &shape.label, shape.stability));
     }
     let label = "at rest, without plates".to_string();
-    legend.push(Entry::Line { color: FAINT, dashed: true, label });
+    legend.push(Entry::Line { color: FAINT, stroke: Stroke::Dashed, label });
     let size = (width as u32, height as u32);
     Chart { title: shown(title), x, y, lines, marks: Vec::new(), legend, size }.svg()
 }
@@ -153,19 +148,15 @@ fn chart(title: &str, x: &str, y: &str, curves: &[Curve]) -> Chart {
         let color = of_quantity(&curve.label);
         let label = if unstable { "stable" } else { &curve.label };
         if !label.is_empty() {
-            legend.push(Entry::Line { color, dashed: false, label: shown(label) });
+            legend.push(Entry::Line { color, stroke: Stroke::Solid, label: shown(label) });
         }
-        if unstable {
-            legend.push(Entry::Line { color, dashed: true, label: "unstable".to_string() });
-        }
+        legend.extend(stability_entries(curves, color));
     } else {
         for curve in curves {
             let (color, label) = (of_quantity(&curve.label), shown(&curve.label));
-            legend.push(Entry::Line { color, dashed: false, label });
+            legend.push(Entry::Line { color, stroke: Stroke::Solid, label });
         }
-        if unstable {
-            legend.push(Entry::Line { color: FAINT, dashed: true, label: "unstable".to_string() });
-        }
+        legend.extend(stability_entries(curves, FAINT));
     }
     let mut kinds: Vec<String> = Vec::new();
     for mark in marks.iter().filter(|mark| drawable(mark.x) && drawable(mark.y)) {
@@ -179,11 +170,7 @@ fn chart(title: &str, x: &str, y: &str, curves: &[Curve]) -> Chart {
 }
 
 /// The stretches of a curve as lines, in the units of the axes.
-pub(super) fn curve_lines(
-    curve: &Curve,
-    color: super::palette::Color,
-    units: (f64, f64),
-) -> Vec<Line> {
+pub(super) fn curve_lines(curve: &Curve, color: Color, units: (f64, f64)) -> Vec<Line> {
     curve
         .stretches()
         .into_iter()
@@ -191,13 +178,55 @@ pub(super) fn curve_lines(
             points: stretch.points.map(|i| (curve.x[i] / units.0, curve.y[i] / units.1)).collect(),
             color,
             width: 2,
-            dashed: stretch.unstable,
+            stroke: Stroke::of(stretch.stability),
         })
         .collect()
 }
 
-fn state_entry(at: usize, label: &str, unstable: bool) -> Entry {
-    Entry::Line { color: of_state(at), dashed: unstable, label: shown(label) }
+/// A curve, but for its points, that shows one state.
+fn of_one_state(stability: Stability, points: usize) -> Curve {
+    Curve {
+        unstable: vec![stability == Stability::Unstable; points],
+        asymmetric: vec![stability == Stability::Asymmetric; points],
+        ..Curve::default()
+    }
+}
+
+fn state_entry(at: usize, label: &str, stability: Stability) -> Entry {
+    let words = match stability {
+        Stability::Stable => "",
+        Stability::Asymmetric => ", unstable to asymmetric modes",
+        Stability::Unstable => ", unstable",
+    };
+    let label = shown(label) + words;
+    Entry::Line { color: of_state(at), stroke: Stroke::of(stability), label }
+}
+
+/// What lines that are not solid mean, where there are any, and what no line tells.
+fn stability_entries(curves: &[Curve], color: Color) -> Vec<Entry> {
+    let examined = curves.first().map(|curve| curve.examined).unwrap_or_default();
+    let own = match examined {
+        Examined::All => "unstable",
+        _ => "unstable to axisymmetric modes",
+    };
+    let mut entries = Vec::new();
+    // a single curve is its own sample
+    if color == FAINT && curves.iter().any(Curve::has_unstable) {
+        let label = "stable".to_owned();
+        entries.push(Entry::Line { color, stroke: Stroke::Solid, label });
+    }
+    let lines =
+        [(Stability::Unstable, own), (Stability::Asymmetric, "unstable to asymmetric modes only")];
+    for (stability, label) in lines {
+        if curves.iter().any(|curve| curve.has(stability)) {
+            let (stroke, label) = (Stroke::of(stability), label.to_owned());
+            entries.push(Entry::Line { color, stroke, label });
+        }
+    }
+    if examined == Examined::Axisymmetric {
+        entries.push(Entry::Note { label: "asymmetric modes not examined".to_owned() });
+    }
+    entries
 }
 
 /// All numbers of one field.

@@ -1,6 +1,7 @@
 //! Pictures of a branch as SVG: plain data in, text out.
 //!
-//! Stable parts are solid, unstable parts dashed. A quantity has one colour in every picture, and
+//! Stable parts are solid, unstable parts dashed, parts that are unstable to asymmetric modes only
+//! dotted. A quantity has one colour in every picture, and
 //! so has a state whose shape and film pressure are shown.
 
 mod axis;
@@ -19,7 +20,7 @@ pub(crate) mod tests;
 pub(crate) use chart::DrawError;
 pub(crate) use cycle::{CyclePictures, LOOP, draw_cycle};
 pub(crate) use data::Mark;
-pub(crate) use data::{Curve, Profile, Shape};
+pub(crate) use data::{Curve, Examined, Profile, Shape, Stability};
 pub(crate) use map::{MAP, draw_map};
 pub(crate) use phase::{PHASE, draw_phase};
 pub(crate) use sheet::{

@@ -30,7 +30,14 @@ pub(crate) fn two_folds() -> Pictures {
             marks.push(Mark { kind: "fold".into(), x: x[i], y: y[i] });
         }
     }
-    let force = Curve { label: "force".into(), x: x.clone(), y, unstable: unstable.clone(), marks };
+    let force = Curve {
+        label: "force".into(),
+        x: x.clone(),
+        y,
+        unstable: unstable.clone(),
+        marks,
+        ..Curve::default()
+    };
     let mut distance = force.clone();
     distance.x.iter_mut().for_each(|x| *x = 1.02 - *x);
     distance.marks.iter_mut().for_each(|mark| mark.x = 1.02 - mark.x);
@@ -47,7 +54,7 @@ pub(crate) fn two_folds() -> Pictures {
         y: x.iter().map(|d| 1e-3 * size * d * (d + 0.1)).collect(),
         x: x.clone(),
         unstable: unstable.clone(),
-        marks: vec![],
+        ..Curve::default()
     })
     .to_vec();
     let states = [(0.0, 0.0, false), (0.08, 0.02, false), (0.16, 0.1, true), (0.3, 0.25, false)];
@@ -60,7 +67,13 @@ pub(crate) fn two_folds() -> Pictures {
                 .map(|s| s.cos().min(1.0 - flat) - dent * (-(s / 0.35).powi(2)).exp())
                 .collect();
             let plate = 1.0 - flat + 0.04;
-            Shape { label: format!("Δ/R₀ = {flat:.2}"), sigma, z, plate, unstable: *unstable }
+            Shape {
+                label: format!("Δ/R₀ = {flat:.2}"),
+                sigma,
+                z,
+                plate,
+                stability: Stability::of(*unstable, false),
+            }
         })
         .collect();
     let film_pressure = states
@@ -74,7 +87,7 @@ pub(crate) fn two_folds() -> Pictures {
                     2e-4 * (-(s / 0.05).powi(2)).exp() - 6e-5 * (-((s - 0.12) / 0.08).powi(2)).exp()
                 })
                 .collect(),
-            unstable: *unstable,
+            stability: Stability::of(*unstable, false),
         })
         .collect();
     Pictures {
@@ -130,6 +143,8 @@ fn degenerate_data_are_drawn_without_complaint() {
                     x: x.clone(),
                     y: y.clone(),
                     unstable,
+                    asymmetric: vec![false, true, true],
+                    examined: Examined::Axisymmetric,
                     marks: vec![mark, Mark::default()],
                 };
                 let shape =

@@ -6,7 +6,7 @@ use super::states::of_contact;
 use super::{Observer, RunError, listen, settings};
 use crate::case::{ContactCase, DeviceCase, Law, ResolvedCase};
 use crate::output::{Cell, ContactRow, EventRecord, MaxwellRecord, Pictures, Table, TraceResult};
-use crate::pictures::{Curve, Mark, Profile, Shape};
+use crate::pictures::{self, Curve, Mark, Profile, Shape};
 use continuation::{Point, Problem, Settings, TraceError};
 use shell_contact::device::{MaxwellPoint, StartError, maxwell_points, trace_loaded};
 use shell_contact::{ContactBranch, ContactProblem, Device, LoadedProblem};
@@ -339,19 +339,9 @@ fn pictures(
     let branch = &traced.branch;
     let rows: Vec<ContactRow> =
         branch.points.iter().enumerate().map(|(i, p)| row(traced, i, p)).collect();
-    let unstable: Vec<bool> =
-        branch.points.iter().enumerate().map(|(i, p)| stability.is_unstable(i, p)).collect();
-    let curve = |label: &str, x: &dyn Fn(&ContactRow) -> f64, y: &dyn Fn(&ContactRow) -> f64| {
-        let (x, y): (Vec<f64>, Vec<f64>) = rows.iter().map(|r| (x(r), y(r))).unzip();
-        let mark = |e: &continuation::Event| Mark {
-            kind: e.kind.to_string(),
-            x: x[e.point],
-            y: y[e.point],
-        };
-        let marks = branch.events.iter().map(mark).collect();
-        Curve { label: label.to_owned(), marks, x, y, unstable: unstable.clone() }
-    };
-    let plain = |label: &str, y: &dyn Fn(&ContactRow) -> f64| Curve {
+    let curve =
+        |label: &str, x: &Column<'_>, y: &Column<'_>| drawn(traced, stability, &rows, label, x, y);
+    let plain = |label: &str, y: &Column<'_>| Curve {
         marks: Vec::new(),
         ..curve(label, &|r| r.deformation, y)
     };
@@ -362,6 +352,8 @@ fn pictures(
         let parameters = problem.parameters_at(z0);
         let u = &point.u[..problem.dim()];
         let Ok(profile) = problem.profile(u, &parameters, SAMPLES) else { continue };
+        let own = point.unstable.is_some_and(|n| n > 0);
+        let state = pictures::Stability::of(own, stability.is_asymmetric(index));
         let label = match traced.deformation(z0) {
             Some(d) => format!("Δ/R₀ = {d:.3}"),
             None => format!("z₀/R₀ = {z0:.3}"),
@@ -371,13 +363,13 @@ fn pictures(
             sigma: profile.sigma.clone(),
             z: profile.z,
             plate: z0,
-            unstable: unstable[index],
+            stability: state,
         });
         film_pressure.push(Profile {
             label,
             sigma: profile.sigma,
             value: profile.disjoining_pressure,
-            unstable: unstable[index],
+            stability: state,
         });
     }
     Pictures {
@@ -402,6 +394,49 @@ fn pictures(
         },
         ..Pictures::default()
     }
+}
+
+/// A column of the table.
+type Column<'c> = dyn Fn(&ContactRow) -> f64 + 'c;
+
+/// One column over another, with the special points that are drawn.
+fn drawn(
+    traced: &ContactBranch,
+    stability: &Stability,
+    rows: &[ContactRow],
+    label: &str,
+    x: &Column<'_>,
+    y: &Column<'_>,
+) -> Curve {
+    let branch = &traced.branch;
+    let (x, y): (Vec<f64>, Vec<f64>) = rows.iter().map(|r| (x(r), y(r))).unzip();
+    let marks = branch.events.iter().filter(|event| stability.is_drawn(event));
+    let mark = |event: &continuation::Event| Mark {
+        kind: event.kind.to_string(),
+        x: x[event.point],
+        y: y[event.point],
+    };
+    Curve {
+        label: label.to_owned(),
+        marks: marks.map(mark).collect(),
+        x,
+        y,
+        unstable: branch.points.iter().map(|p| p.unstable.is_some_and(|n| n > 0)).collect(),
+        asymmetric: (0..branch.points.len()).map(|i| stability.is_asymmetric(i)).collect(),
+        examined: stability.examined(),
+    }
+}
+
+/// A branch of a diagram and its force over the plate distance.
+pub(super) fn on_diagram(
+    case: &ResolvedCase,
+    traced: &ContactBranch,
+    stability: &Stability,
+) -> (TraceResult, Curve) {
+    let points = traced.branch.points.iter().enumerate();
+    let rows: Vec<ContactRow> = points.map(|(i, p)| row(traced, i, p)).collect();
+    let curve = drawn(traced, stability, &rows, "force", &|r| r.z0, &|r| r.force);
+    (examined(case, traced, 0.0, stability), curve)
 }
 
 /// Points to draw: the first zero of the force, and three more, evenly spaced up to the end of

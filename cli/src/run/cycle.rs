@@ -4,7 +4,7 @@ use super::contact::{SAMPLES, device, follow, loaded_path, not_held, path, resul
 use super::{Observer, RunError, listen, ways};
 use crate::case::{ProblemCase, ResolvedCase};
 use crate::output::{CycleResult, FoldRecord, JumpRecord, PathRow, ReportedCycle, StretchRecord};
-use crate::pictures::{Curve, CyclePictures, Mark, Shape};
+use crate::pictures::{Curve, CyclePictures, Mark, Shape, Stability};
 use continuation::{EventKind, Problem, Settings};
 use shell_contact::device::{
     Cycle, CyclePoint, CycleSettings, Direction, Loading, RelaxationSettings, balance, free_start,
@@ -248,7 +248,7 @@ fn pictures(
                 sigma: profile.sigma,
                 z: profile.z,
                 plate: point.z0,
-                unstable: false,
+                stability: Stability::Stable,
             })
         };
         let pair = [of(before, "before"), of(after, "after")];

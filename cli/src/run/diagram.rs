@@ -1,6 +1,7 @@
 //! Whole diagrams, of every kind of problem.
 
 use super::form::certified;
+use super::stability::Stability;
 use super::{RunError, contact, general, ring_load, states};
 use crate::case::{ProblemCase, ResolvedCase};
 use crate::output::{BranchRecord, DiagramResult, From, NearRecord, TraceResult};
@@ -144,30 +145,33 @@ pub(crate) fn run_diagram(
                 settings: Settings::default(),
                 watches: force_watches().to_vec(),
             };
-            let explored = explore(contact::path(case), keep, observer).run(&problem, &setup);
+            let explored = explore(contact::path(case), keep, &mut *observer).run(&problem, &setup);
             let (diagram, seconds) = explored.map_err(|error| match error {
                 DiagramError::Trace(detail) => contact::no_start(case, detail),
                 error => RunError::Diagram { case: case.name.clone(), error },
             })?;
+            let scanning = Instant::now();
             let mut zero = None;
             let points = diagram.branches.iter().map(|one| one.branch.points.len()).sum();
-            Ok(result(
-                case,
-                diagram,
-                seconds,
-                ("plate distance z₀/R₀", "force F/√(χ k_b)"),
-                &mut |branch| {
-                    let traced = ContactBranch::new(branch, zero);
-                    zero = traced.zero_force;
-                    let curve = curve(&traced.branch, "force");
-                    let mut result = contact::result(case, &traced, 0.0);
-                    if reported {
-                        result.pictures.states =
-                            states::of_contact(&problem, &traced.branch, points);
-                    }
-                    (result, curve)
-                },
-            ))
+            let mut waiting = diagram.branches.len();
+            let done = diagram.branches.len();
+            let axes = ("plate distance z₀/R₀", "force F/√(χ k_b)");
+            let explored = result(case, diagram, seconds, axes, &mut |branch| {
+                let mut traced = ContactBranch::new(branch, zero);
+                zero = traced.zero_force;
+                waiting -= 1;
+                let scan = &mut |branch| {
+                    observer(DiagramProgress { branches: done - waiting, waiting, branch })
+                };
+                let stability = Stability::of(case, &problem, &mut traced, scan);
+                let (mut trace, curve) = contact::on_diagram(case, &traced, &stability);
+                if reported {
+                    trace.pictures.states = states::of_contact(&problem, &traced.branch, points);
+                }
+                Presented { trace, curve, stability }
+            });
+            let seconds = explored.seconds + scanning.elapsed().as_secs_f64();
+            Ok(DiagramResult { seconds, ..explored })
         }
         ProblemCase::RingLoad(ring) => {
             let ring_load::Start { problem, u, p } = ring_load::start(case, ring)?;
@@ -201,7 +205,7 @@ pub(crate) fn run_diagram(
                 if reported {
                     result.pictures.states = states::of_ring_load(&problem, &branch, points);
                 }
-                (result, curve)
+                Presented { trace: result, curve, stability: Stability::default() }
             }))
         }
         ProblemCase::Catalogue(problem) => {
@@ -218,7 +222,8 @@ pub(crate) fn run_diagram(
             let axes = (entry.parameter, &shown[..]);
             Ok(result(case, diagram, seconds, axes, &mut |branch| {
                 let curve = curve(&branch, &shown);
-                (general::result(case, &branch, 0.0), curve)
+                let trace = general::result(case, &branch, 0.0);
+                Presented { trace, curve, stability: Stability::default() }
             }))
         }
     }
@@ -239,7 +244,16 @@ fn curve(branch: &Branch, observable: &str) -> Curve {
             .iter()
             .map(|event| Mark { kind: event.kind.to_string(), x: event.p, y: value(event.point) })
             .collect(),
+        ..Curve::default()
     }
+}
+
+/// A branch as plain numbers.
+struct Presented {
+    trace: TraceResult,
+    curve: Curve,
+    /// Knows the new numbers of special points, if there are more of them now.
+    stability: Stability,
 }
 
 /// A diagram as plain numbers.
@@ -248,12 +262,13 @@ fn result(
     diagram: Diagram,
     seconds: f64,
     (x, y): (&str, &str),
-    present: &mut dyn FnMut(Branch) -> (TraceResult, Curve),
+    present: &mut dyn FnMut(Branch) -> Presented,
 ) -> DiagramResult {
     let statistics = diagram.statistics();
     let (stopped_because, stopped_detail) = ending(&diagram);
     let parameter =
         diagram.branches.first().map(|one| one.branch.parameter.clone()).unwrap_or_default();
+    let mut scans = Vec::new();
     let branches = diagram.branches.into_iter().map(|one| {
         let began = one.branch.began.as_ref().map(|stop| stop.reason);
         let near = one.near.iter().map(|near| {
@@ -264,7 +279,8 @@ fn result(
             NearRecord { kind, parameter: near.p, gap: near.gap }
         });
         let near = near.collect();
-        let (trace, curve) = present(one.branch);
+        let Presented { trace, curve, stability } = present(one.branch);
+        scans.push((one.id, stability));
         let from = match one.origin {
             Origin::Switch { branch, event, .. } => From::Switch { branch, event },
             Origin::Deflation { branch, parameter, .. } => From::Deflation { branch, parameter },
@@ -280,11 +296,25 @@ fn result(
             curve,
         }
     });
+    let mut branches: Vec<BranchRecord> = branches.collect();
+    let renumbered = |branch: usize, event: usize| {
+        let scan = scans.iter().find(|(id, _)| *id == branch);
+        scan.map_or(event, |(_, stability)| stability.renumbered(event))
+    };
+    for one in &mut branches {
+        if let From::Switch { branch, event } = &mut one.from {
+            *event = renumbered(*branch, *event);
+        }
+    }
+    let mut joints = diagram.joints;
+    for (branch, event) in joints.iter_mut().flat_map(|joint| &mut joint.passed) {
+        *event = renumbered(*branch, *event);
+    }
     DiagramResult {
         case: case.name.clone(),
         parameter,
-        branches: branches.collect(),
-        joints: diagram.joints,
+        branches,
+        joints,
         stopped_because,
         stopped_detail,
         newton_iterations: statistics.newton_iterations,

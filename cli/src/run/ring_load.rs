@@ -7,7 +7,7 @@ use super::states::of_ring_load;
 use super::{Observer, Progress, RunError, listen, settings};
 use crate::case::{PathCase, ResolvedCase, RingLoadCase};
 use crate::output::{Cell, EventRecord, Pictures, Table, TraceResult};
-use crate::pictures::{Curve, Mark, Shape};
+use crate::pictures::{Curve, Mark, Shape, Stability};
 use continuation::diagram::{Diagram, Origin};
 use continuation::{Branch, Settings, TraceError, Tracer, Watch};
 use shell_contact::{RingGroups, RingLoadProblem, Shell};
@@ -223,6 +223,7 @@ pub(super) fn curve(branch: &Branch) -> Curve {
         y: (0..branch.points.len()).map(value).collect(),
         unstable: branch.points.iter().map(|p| p.unstable.is_some_and(|n| n > 0)).collect(),
         marks: branch.events.iter().map(mark).collect(),
+        ..Curve::default()
     }
 }
 
@@ -241,7 +242,7 @@ fn shapes(problem: &RingLoadProblem, branch: &Branch) -> Vec<Shape> {
             sigma: profile.sigma,
             z: profile.z,
             plate: ring,
-            unstable: point.unstable.is_some_and(|n| n > 0),
+            stability: Stability::of(point.unstable.is_some_and(|n| n > 0), false),
         })
     };
     let mut chosen = chosen.to_vec();

@@ -3,6 +3,7 @@
 use super::{Observer, Progress};
 use crate::case::{ResolvedCase, StabilityCase};
 use crate::output::{Cell, ModeRecord, StabilityRecord};
+use crate::pictures::Examined;
 use continuation::{Branch, Event, EventKind, Point, Problem, StopReason};
 use shell_contact::modes::{Scan, ScanSettings, Scanned, SymmetryBreaking, scan_branch};
 use shell_contact::{ContactBranch, ContactProblem};
@@ -17,6 +18,8 @@ pub(super) struct Stability {
     scans: Vec<Scan>,
     /// In order along the branch.
     modes: Vec<ModeRecord>,
+    /// The new number of each special point that the branch had.
+    renumbered: Vec<usize>,
     missed: usize,
     full: bool,
     /// Whether it was interrupted.
@@ -53,7 +56,7 @@ impl Stability {
                 missed,
                 full: true,
                 partial,
-                modes: Vec::new(),
+                ..Stability::default()
             };
         }
         insert(problem, branch, scanned)
@@ -78,8 +81,31 @@ impl Stability {
 
     /// Whether anything that was counted is unstable.
     pub(super) fn is_unstable(&self, index: usize, point: &Point) -> bool {
-        let beyond = self.scans.get(index).is_some_and(|s| s.antisymmetric + s.modes > 0);
-        beyond || point.unstable.is_some_and(|n| n > 0)
+        self.is_asymmetric(index) || point.unstable.is_some_and(|n| n > 0)
+    }
+
+    /// Whether modes without the symmetries of the branch are unstable.
+    pub(super) fn is_asymmetric(&self, index: usize) -> bool {
+        self.scans.get(index).is_some_and(|s| s.antisymmetric + s.modes > 0)
+    }
+
+    /// Which modes were examined.
+    pub(super) fn examined(&self) -> Examined {
+        if self.full { Examined::AxisymmetricAndOthers } else { Examined::Axisymmetric }
+    }
+
+    /// Whether a special point is drawn: of those at which symmetry is lost, the ones where the
+    /// first such mode becomes unstable or the last one stable again.
+    pub(super) fn is_drawn(&self, event: &Event) -> bool {
+        let at = event.point;
+        event.kind != EventKind::Named(KIND.to_owned())
+            || at == 0
+            || self.is_asymmetric(at - 1) != self.is_asymmetric(at + 1)
+    }
+
+    /// The number that a special point of the branch has now.
+    pub(super) fn renumbered(&self, event: usize) -> usize {
+        self.renumbered.get(event).copied().unwrap_or(event)
     }
 
     /// The mode of the branch's special point number `event`.
@@ -150,8 +176,16 @@ fn insert(problem: &ContactProblem, branch: &mut Branch, scanned: Scanned) -> St
     for event in &mut branch.events {
         event.point = place.get(event.point).copied().unwrap_or(event.point);
     }
-    branch.events.extend(marks);
-    branch.events.sort_by_key(|event| event.point);
+    let own = branch.events.drain(..).enumerate().map(|(k, event)| (Some(k), event));
+    let mut events: Vec<_> = own.chain(marks.into_iter().map(|event| (None, event))).collect();
+    events.sort_by_key(|(_, event)| event.point);
+    out.renumbered = vec![0; events.iter().filter(|(old, _)| old.is_some()).count()];
+    for (new, (old, event)) in events.into_iter().enumerate() {
+        if let Some(old) = old {
+            out.renumbered[old] = new;
+        }
+        branch.events.push(event);
+    }
     for (k, event) in branch.events.iter().enumerate() {
         if let Some(point) = branch.points.get_mut(event.point) {
             point.event = Some(k);
@@ -182,4 +216,53 @@ fn between(
         observables,
         event: None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use continuation::Settings;
+    use shell_contact::{Dimensionless, Law, Mesh, Shell, trace_contact};
+    use std::ops::ControlFlow;
+
+    #[test]
+    fn special_points_keep_their_names_among_those_that_are_put_in() {
+        let groups = Dimensionless {
+            bending: 3e-5,
+            pressure: 3e-3,
+            adhesion: 2e-3,
+            film: 1.0 / 30.0,
+            surface_tension: 0.0,
+            gas_exponent: 1.07,
+        };
+        let shell = Shell { law: Law::Hooke, poisson: 0.5 };
+        let problem = ContactProblem::new(&shell, &groups, Mesh::uniform(50).unwrap()).unwrap();
+        let settings = Settings { target: Some(0.815), ..Settings::default() };
+        let go_on = ControlFlow::Continue(());
+        let mut branch = trace_contact(&problem, 1.15, settings, &mut |_| go_on).unwrap().branch;
+        let old = branch.events.clone();
+        let scanned =
+            scan_branch(&problem, &branch, &ScanSettings::default(), &mut |_| go_on).unwrap();
+        let found = scanned.events.len();
+        let stability = insert(&problem, &mut branch, scanned);
+        assert!(old.len() > 4 && found > 10, "{} {found}", old.len());
+        assert_eq!(branch.events.len(), old.len() + found);
+        assert_eq!(stability.scans.len(), branch.points.len());
+        for (k, event) in old.iter().enumerate() {
+            let now = &branch.events[stability.renumbered(k)];
+            assert_eq!((&now.kind, now.p), (&event.kind, event.p));
+        }
+        for (k, event) in branch.events.iter().enumerate() {
+            assert_eq!(branch.points[event.point].event, Some(k));
+            let own = event.kind == EventKind::Named(KIND.to_owned());
+            assert_eq!(stability.mode(&branch, k).is_some(), own);
+        }
+        // of the losses of symmetry those are drawn where stability against them begins or ends
+        let drawn = branch
+            .events
+            .iter()
+            .filter(|e| e.kind == EventKind::Named(KIND.to_owned()) && stability.is_drawn(e));
+        let places: Vec<f64> = drawn.map(|e| (e.p * 1e3).round()).collect();
+        assert_eq!(places, [1030.0, 819.0, 873.0, 870.0]);
+    }
 }

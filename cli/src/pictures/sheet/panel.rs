@@ -3,7 +3,7 @@
 use super::text::{self, Style};
 use super::{Panel, PanelLine, Pen, hex};
 use crate::pictures::axis::Axis;
-use crate::pictures::data::drawable;
+use crate::pictures::data::{Stability, drawable};
 use crate::pictures::palette::{FAINT, GRID};
 use std::fmt::Write;
 
@@ -149,7 +149,7 @@ impl<'p> Layout<'p> {
             _ => &self.y,
         };
         for stretch in line.curve.stretches() {
-            let dashed = stretch.unstable;
+            let dashed = stretch.stability != Stability::Stable;
             let mut path = String::new();
             let mut last = [f64::NAN; 2];
             for i in stretch.points {
@@ -208,7 +208,7 @@ fn entries<'p>(
 
 fn unstable_only(line: &PanelLine) -> bool {
     let stretches = line.curve.stretches();
-    !stretches.is_empty() && stretches.iter().all(|s| s.unstable)
+    !stretches.is_empty() && stretches.iter().all(|s| s.stability != Stability::Stable)
 }
 
 fn stroke(line: &PanelLine, dashed: bool) -> String {
