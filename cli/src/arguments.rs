@@ -162,8 +162,8 @@ pub(crate) struct MapArguments {
 /// Which figures, and what to do with them.
 #[derive(Debug, Args)]
 pub(crate) struct FigureArguments {
-    /// Numbers of figures, or "all"
-    #[arg(value_name = "N|all", required = true)]
+    /// Numbers of figures, "stability", or "all"
+    #[arg(value_name = "N|stability|all", required = true)]
     pub(crate) numbers: Vec<String>,
     /// Number of elements, as --set mesh.elements=N
     #[arg(long, value_name = "N", allow_negative_numbers = true)]

@@ -89,6 +89,48 @@ fn measured_values_are_those_of_other_solvers_and_the_page_needs_nothing_else() 
     assert_eq!(traced["stopped_because"], "target");
 }
 
+/// The figure that is not of the paper: every window of instability, and its ends.
+#[test]
+fn windows_of_instability_are_those_of_another_solver() {
+    let place = tempfile::tempdir().unwrap();
+    let arguments = ["figure", "stability", "--elements", "200", "--out", "o"];
+    let output = arclen(place.path(), &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stdout));
+    let out = place.path().join("o");
+    for name in ["stability.svg", "stability.png", "index.html", "data/stability-c.csv"] {
+        assert!(fs::metadata(out.join(name)).unwrap().len() > 1000, "{name}");
+    }
+    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    for link in page.split("href=\"").skip(1).map(|rest| rest.split('"').next().unwrap()) {
+        assert!(link.starts_with('#') || out.join(link).is_file(), "{link}");
+    }
+    assert_eq!(read(&out.join("figures.json"))["figures"][0]["figure"], "stability");
+    let table = fs::read_to_string(out.join("data/stability-windows.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|l| l.split(',').collect()).collect();
+    let (onset, end) = ("onset", "end of branch");
+    for (curve, n, parity, from, to, words) in [
+        ("fig06", "0", "antisymmetric", 1.06, 1.033_367_373_8, [end, onset]),
+        ("fig06", "4", "symmetric", 0.783_226_730_7, 0.65, [onset, end]),
+        ("fig07", "0", "antisymmetric", 1.2, 1.051_748_457_5, [end, onset]),
+        ("fig12", "2", "symmetric", 0.870_433_406_4, 0.728_624_141_6, [onset, onset]),
+        ("fig12", "2", "antisymmetric", 0.870_442_532_6, 0.729_626_278_4, [onset, onset]),
+        ("fig12", "12", "symmetric", 0.649_891_234_4, 0.6, [onset, end]),
+        // between the folds
+        ("fig12", "0", "symmetric", 0.818_761_9, 0.873_240_6, [onset, onset]),
+        ("fig16", "0", "antisymmetric", 1.112_531_532_5, 1.062_917_422_4, [onset, onset]),
+    ] {
+        let near = |cell: &str, known: f64| (cell.parse::<f64>().unwrap() - known).abs() < 1e-7;
+        let found = rows.iter().filter(|r| r[..3] == [curve, n, parity]);
+        let found: Vec<_> = found.filter(|r| near(r[3], from) && near(r[4], to)).collect();
+        assert_eq!(found.len(), 1, "{curve} {n} {parity} {from}: {table}");
+        assert_eq!(found[0][7..], words, "{curve} {n} {parity}");
+    }
+    // soft shells keep their circular shape; no shell has a window of one wave
+    let soft = rows.iter().filter(|r| r[0] == "fig07" || r[0] == "fig16");
+    assert!(soft.clone().count() == 4 && soft.clone().all(|r| r[1] == "0"), "{table}");
+    assert!(rows.iter().all(|r| r[1] != "1"), "{table}");
+}
+
 #[test]
 fn numbers_and_options_that_are_wrong_create_nothing() {
     let place = tempfile::tempdir().unwrap();

@@ -1,10 +1,11 @@
 //! The branches of a figure: resolved, traced side by side, and asked for states in between.
 
 use super::FigureError;
-use super::manifest::{Abscissa, CASES, Manifest, Ordinate};
-use crate::case::{ContactCase, Override, ProblemCase, ResolvedCase, load_text};
+use super::manifest::{Abscissa, CASES, Manifest, Ordinate, stem};
+use crate::case::{ContactCase, Override, ProblemCase, ResolvedCase, StabilityCase, load_text};
 use crate::run::{RunError, contact_branch};
 use continuation::{EventKind, NewtonSettings, newton};
+use shell_contact::modes::{ScanSettings, Scanned, scan_branch};
 use shell_contact::{ContactBranch, ContactProblem, Observation, Profile};
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -22,6 +23,8 @@ pub(super) struct Job {
     label: String,
     case: ResolvedCase,
     contact: ContactCase,
+    /// Whether modes without the branch's symmetries are counted.
+    scan: bool,
 }
 
 /// A traced branch.
@@ -39,6 +42,8 @@ pub(crate) struct Traced {
     pub(crate) problem: ContactProblem,
     /// The branch.
     pub(crate) branch: ContactBranch,
+    /// What is unstable along it beyond its own counts, if that was asked for.
+    pub(crate) scanned: Option<Scanned>,
     radius: f64,
     chi: f64,
     pull: Option<usize>,
@@ -77,7 +82,7 @@ pub(super) fn jobs(
                 figure: manifest.number,
                 detail: format!("no case \"{}\"", curve.case),
             })?;
-            let name = format!("fig{:02}-{}", manifest.number, curve.name);
+            let name = format!("{}-{}", stem(manifest.number), curve.name);
             let file = format!("figure {}, curve {}", manifest.number, curve.name);
             let case = load_text(&file, &name, text, &overrides, &[])?.case;
             match &case.problem {
@@ -87,6 +92,7 @@ pub(super) fn jobs(
                     label: curve.label.clone(),
                     contact: contact.clone(),
                     case,
+                    scan: manifest.scans(),
                 }),
                 _ => Err(FigureError::Manifest {
                     figure: manifest.number,
@@ -134,14 +140,23 @@ pub(super) fn trace_all(
 }
 
 fn trace(job: &Job, stop: &AtomicBool) -> Result<Traced, RunError> {
-    let go_on = |_| {
+    let go_on = |()| {
         if stop.load(Ordering::Relaxed) {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
         }
     };
-    let (problem, branch) = contact_branch(&job.case, &job.contact, &mut { go_on })?;
+    let (problem, branch) = contact_branch(&job.case, &job.contact, &mut |_| go_on(()))?;
+    let counting = &mut |_| go_on(());
+    let scanned = match job.case.stability {
+        StabilityCase::Full { max_n } if job.scan => {
+            let settings = ScanSettings { max_n, ..ScanSettings::default() };
+            // a branch of admissible states is scanned to its end
+            scan_branch(&problem, &branch.branch, &settings, counting).ok()
+        }
+        _ => None,
+    };
     let (radius, chi) = match &job.contact.physical {
         Some(physical) => (physical.radius.si, physical.chi()),
         None => (1.0, 1.0),
@@ -150,7 +165,7 @@ fn trace(job: &Job, stop: &AtomicBool) -> Result<Traced, RunError> {
     let pull = branch.branch.events_of(&zero).next().map(|event| event.point);
     let (figure, name, label) = (job.figure, job.name.clone(), job.label.clone());
     let case = job.case.clone();
-    Ok(Traced { figure, name, label, case, problem, branch, radius, chi, pull })
+    Ok(Traced { figure, name, label, case, problem, branch, scanned, radius, chi, pull })
 }
 
 impl Traced {

@@ -1,8 +1,10 @@
 //! The files of figures: drawings, pictures, data, cases, claims, and the page.
 
 use super::claims::{Claim, Verdict};
+use super::manifest::{STABILITY, stem};
 use super::page::page;
 use super::ring::RingBranch;
+use super::windows;
 use super::{Computed, Figure};
 use crate::output::branch_csv;
 use crate::pictures::{Panel, Pen, PngError, png};
@@ -32,10 +34,13 @@ pub(crate) enum FileError {
     Json(#[from] serde_json::Error),
 }
 
+/// Name of the table of windows of instability.
+pub(super) const WINDOWS: &str = "data/stability-windows.csv";
+
 /// Name of the table behind a panel.
 pub(super) fn data_name(figure: u32, letter: &str) -> String {
     let letter = if letter.is_empty() { "a" } else { letter };
-    format!("data/fig{figure:02}-{}.csv", letter.replace(", ", "-").replace(' ', "-"))
+    format!("data/{}-{}.csv", stem(figure), letter.replace(", ", "-").replace(' ', "-"))
 }
 
 /// All files: name and content. Without `pictures` neither drawings nor pictures nor the page.
@@ -59,6 +64,12 @@ pub(crate) fn files(
             let table = table.map_err(|error| FileError::Csv { name: name.clone(), error })?;
             files.push((name, table));
         }
+        if figure.manifest.scans() {
+            let name = WINDOWS.to_owned();
+            let table = windows::csv(&figure.traced);
+            let table = table.map_err(|error| FileError::Csv { name: name.clone(), error })?;
+            files.push((name, table));
+        }
         for traced in &figure.traced {
             let result = contact_result(&traced.case, &traced.branch, 0.0);
             let name = format!("data/{}-branch.csv", traced.case.name);
@@ -78,8 +89,8 @@ pub(crate) fn files(
         for ((figure, svg), png) in computed.figures.iter().zip(&drawings).zip(made) {
             let number = figure.manifest.number;
             let png = png.map_err(|error| FileError::Png { figure: number, error })?;
-            files.push((format!("fig{number:02}.svg"), svg.clone().into_bytes()));
-            files.push((format!("fig{number:02}.png"), png));
+            files.push((format!("{}.svg", stem(number)), svg.clone().into_bytes()));
+            files.push((format!("{}.png", stem(number)), png));
         }
         // the page has the titles itself
         let untitled: Vec<String> = computed.figures.iter().map(|f| f.sheet.untitled()).collect();
@@ -180,7 +191,7 @@ pub(crate) fn json(computed: &Computed) -> Result<String, serde_json::Error> {
                 })
                 .collect();
             serde_json::json!({
-                "figure": m.number,
+                "figure": name(m.number),
                 "title": m.title,
                 "notes": m.notes,
                 "panels": panels,
@@ -199,10 +210,18 @@ pub(crate) fn json(computed: &Computed) -> Result<String, serde_json::Error> {
     Ok(text)
 }
 
+/// The number of a figure of the paper, or the name of another.
+fn name(figure: u32) -> serde_json::Value {
+    if figure == STABILITY { "stability".into() } else { figure.into() }
+}
+
 /// For people: figures, verdicts, and what is incomplete.
 pub(crate) fn summary(computed: &Computed) -> String {
-    let numbers: Vec<String> =
-        computed.figures.iter().map(|f| f.manifest.number.to_string()).collect();
+    let numbers: Vec<String> = computed
+        .figures
+        .iter()
+        .map(|f| name(f.manifest.number).to_string().replace('"', ""))
+        .collect();
     let mut text = format!("figures {}\n", numbers.join(", "));
     let count = |verdict| computed.claims.iter().filter(|c| c.verdict == verdict).count();
     if !computed.claims.is_empty() {

@@ -80,6 +80,21 @@ pub(crate) struct PanelSpec {
     pub(crate) ring_load: bool,
 }
 
+impl Manifest {
+    /// Number and title.
+    pub(crate) fn heading(&self) -> String {
+        match self.number {
+            STABILITY => self.title.clone(),
+            number => format!("Figure {number}. {}", self.title),
+        }
+    }
+
+    /// Whether modes without the symmetries of the branches are counted.
+    pub(crate) fn scans(&self) -> bool {
+        self.panels.iter().any(|panel| panel.show == Show::Windows)
+    }
+}
+
 /// What a panel draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -92,6 +107,8 @@ pub(crate) enum Show {
     Shapes,
     /// Disjoining pressure.
     Pressure,
+    /// Stretches on which modes are unstable, without the symmetries of the branch too.
+    Windows,
 }
 
 /// What stands on the horizontal axis.
@@ -187,6 +204,17 @@ pub(crate) const FIGURES: &[(u32, &str)] = embedded! {
     20: "fig20.toml",
 };
 
+/// The number of the figure that is not of the paper.
+pub(crate) const STABILITY: u32 = 0;
+
+/// That figure: number and manifest.
+pub(crate) const OWN: (u32, &str) = (STABILITY, include_str!("../../figures/stability.toml"));
+
+/// What names of files begin with.
+pub(crate) fn stem(figure: u32) -> String {
+    if figure == STABILITY { "stability".to_owned() } else { format!("fig{figure:02}") }
+}
+
 /// Figures in which nothing is computed: number and why.
 pub(crate) const SCHEMATIC: &[(u32, &str)] = &[
     (1, "a sketch of the bubble under the cantilever and of its coordinates"),
@@ -219,7 +247,7 @@ mod tests {
 
     #[test]
     fn manifests_parse_and_name_only_what_exists() {
-        for (number, text) in FIGURES {
+        for (number, text) in FIGURES.iter().chain([&OWN]) {
             let m = parse(text).unwrap();
             assert_eq!(m.number, *number);
             for curve in &m.curves {

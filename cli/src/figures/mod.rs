@@ -13,6 +13,7 @@ mod manifest;
 mod page;
 mod panels;
 mod ring;
+mod windows;
 
 pub(crate) use files::{files, json, summary};
 
@@ -22,7 +23,7 @@ use crate::run::RunError;
 use claims::Claim;
 use curve::Traced;
 use estimates::EstimateRow;
-use manifest::{FIGURES, Manifest, SCHEMATIC};
+use manifest::{FIGURES, Manifest, OWN, SCHEMATIC, STABILITY};
 use ring::RingBranch;
 use std::sync::atomic::AtomicBool;
 
@@ -31,7 +32,7 @@ use std::sync::atomic::AtomicBool;
 #[non_exhaustive]
 pub(crate) enum FigureError {
     /// No figure of that number.
-    #[error("there is no figure \"{asked}\"; computed are {}, or \"all\"", known())]
+    #[error("there is no figure \"{asked}\"; computed are {}, \"stability\", or \"all\"", known())]
     Unknown {
         /// What was asked for.
         asked: String,
@@ -77,6 +78,10 @@ pub(crate) fn numbers(asked: &[String]) -> Result<Vec<u32>, FigureError> {
     for word in asked {
         if word == "all" {
             numbers.extend(FIGURES.iter().map(|(number, _)| *number));
+            continue;
+        }
+        if word == "stability" {
+            numbers.push(STABILITY);
             continue;
         }
         let unknown = || FigureError::Unknown { asked: crate::case::document::shown(word) };
@@ -143,7 +148,8 @@ pub(crate) fn plan(
     set: &[String],
 ) -> Result<Plan, FigureError> {
     let (mut manifests, mut jobs) = (Vec::new(), Vec::new());
-    for (figure, text) in FIGURES.iter().filter(|(number, _)| numbers.contains(number)) {
+    let known = FIGURES.iter().chain([&OWN]);
+    for (figure, text) in known.filter(|(number, _)| numbers.contains(number)) {
         let manifest = manifest::parse(text).map_err(|error| FigureError::Manifest {
             figure: *figure,
             detail: error.to_string(),
@@ -176,6 +182,12 @@ impl Plan {
                 format!("figure {}, curve {}: {reason} at z0 = {at:.6}: {detail}", t.figure, t.name)
             })
             .collect();
+        for t in &traced {
+            let scanned = t.scanned.as_ref().map(|scanned| scanned.points.len());
+            if scanned.is_some_and(|points| points < t.branch.branch.points.len()) {
+                early.push(format!("stability, curve {}: not scanned to its end", t.name));
+            }
+        }
         let rings: Vec<RingBranch> = self
             .manifests
             .iter()
@@ -199,7 +211,7 @@ impl Plan {
             let views: Vec<&Traced> = traced.iter().collect();
             early.extend(panels::not_reached(&manifest, &views));
             let sheet = Sheet {
-                title: format!("Figure {}. {}", manifest.number, manifest.title),
+                title: manifest.heading(),
                 subtitle: String::new(),
                 panels: panels::panels(&manifest, &views, &rings),
             };
@@ -219,6 +231,7 @@ mod tests {
             |words: &[&str]| numbers(&words.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>());
         assert_eq!(ask(&["12", "6", "12"]).unwrap(), [6, 12]);
         assert_eq!(ask(&["all"]).unwrap().len(), FIGURES.len());
+        assert_eq!(ask(&["stability"]).unwrap(), [STABILITY]);
         let error = ask(&["21"]).unwrap_err().to_string();
         assert!(error.contains("\"21\"") && error.contains("19, 20"), "{error}");
         let error = ask(&["8"]).unwrap_err().to_string();

@@ -3,7 +3,8 @@
 use super::Computed;
 use super::claims::{Claim, Verdict};
 use super::estimates::EstimateRow;
-use super::files::data_name;
+use super::files::{WINDOWS, data_name};
+use super::manifest::{STABILITY, stem};
 use crate::pictures::{BOLD, FAMILY, FONT, escape};
 use std::fmt::Write;
 
@@ -41,7 +42,8 @@ pub(super) fn page(computed: &Computed, drawings: &[String]) -> String {
     out.push_str("<nav>");
     for figure in &computed.figures {
         let n = figure.manifest.number;
-        let _ = write!(out, "<a href=\"#fig{n}\">Fig. {n}</a> ");
+        let shown = if n == STABILITY { "Stability".to_owned() } else { format!("Fig. {n}") };
+        let _ = write!(out, "<a href=\"#fig{n}\">{shown}</a> ");
     }
     if !computed.claims.is_empty() {
         out.push_str("<a href=\"#claims\">Claims</a>");
@@ -51,8 +53,8 @@ pub(super) fn page(computed: &Computed, drawings: &[String]) -> String {
     for (figure, svg) in computed.figures.iter().zip(drawings) {
         let m = &figure.manifest;
         let n = m.number;
-        let _ = write!(out, "<section id=\"fig{n}\"><h2>Figure {n}. ");
-        small(&mut out, &m.title);
+        let _ = write!(out, "<section id=\"fig{n}\"><h2>");
+        small(&mut out, &m.heading());
         out.push_str("</h2>\n");
         // ids of clipping paths are unique in one drawing only
         let svg = svg.replace("frame-", &format!("f{n}-frame-"));
@@ -73,8 +75,12 @@ pub(super) fn page(computed: &Computed, drawings: &[String]) -> String {
         }
         let _ = write!(
             out,
-            "<p class=\"files\"><a href=\"fig{n:02}.svg\">SVG</a> <a href=\"fig{n:02}.png\">PNG</a> data:"
+            "<p class=\"files\"><a href=\"{0}.svg\">SVG</a> <a href=\"{0}.png\">PNG</a> data:",
+            stem(n)
         );
+        if m.scans() {
+            let _ = write!(out, " <a href=\"{WINDOWS}\">(windows)</a>");
+        }
         for panel in &m.panels {
             let name = data_name(n, &panel.letter);
             let shown = if panel.letter.is_empty() { "curves" } else { &panel.letter };

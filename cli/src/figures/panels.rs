@@ -4,6 +4,7 @@ use super::curve::{State, Traced};
 use super::laws::force;
 use super::manifest::{Abscissa, Law, Manifest, Ordinate, PanelSpec, Part, Show};
 use super::ring::{RingBranch, RingPoint};
+use super::windows;
 use crate::pictures::{Curve, Ink, Panel, PanelLine, Pen};
 use std::f64::consts::TAU;
 
@@ -47,6 +48,7 @@ pub(super) fn panels(manifest: &Manifest, traced: &[&Traced], rings: &[RingBranc
             Show::Energies => energies(spec, &curves),
             Show::Shapes => shapes(spec, &states(spec, &curves, &keys)),
             Show::Pressure => pressure(spec, &states(spec, &curves, &keys)),
+            Show::Windows => windows::panel(spec, &curves, x_title(spec.x)),
         };
         if spec.ring_load {
             match spec.show {

@@ -92,6 +92,8 @@ pub(crate) struct Panel {
     pub(crate) y_range: Option<[f64; 2]>,
     /// Whether a unit is as long on both axes.
     pub(crate) proportional: bool,
+    /// What dashes mean, if not "unstable".
+    pub(crate) dashed: Option<&'static str>,
 }
 
 /// A figure.

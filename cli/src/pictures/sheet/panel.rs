@@ -203,7 +203,7 @@ fn entries<'p>(
     };
     let dashes = panel.lines.iter().any(|l| l.pen == Pen::Data && seen(l));
     let lines = lines.map(|l| (l.label.as_str(), Some(l)));
-    lines.chain(dashes.then_some(("unstable", None)))
+    lines.chain(dashes.then_some((panel.dashed.unwrap_or("unstable"), None)))
 }
 
 fn unstable_only(line: &PanelLine) -> bool {
