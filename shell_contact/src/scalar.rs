@@ -24,12 +24,20 @@ pub trait Scalar:
     fn sqrt(self) -> Self;
     /// Reciprocal.
     fn recip(self) -> Self;
+    /// Whether it is zero; not needed where a derivative could matter, which is so by default.
+    fn is_zero(self) -> bool {
+        false
+    }
 }
 
 impl Scalar for f64 {
     #[inline(always)]
     fn constant(value: f64) -> f64 {
         value
+    }
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self == 0.0
     }
     #[inline(always)]
     fn sqrt(self) -> f64 {
@@ -125,6 +133,10 @@ impl Scalar for Lanes {
     #[inline(always)]
     fn constant(value: f64) -> Lanes {
         Lanes([value; WIDTH])
+    }
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.0.iter().all(|x| *x == 0.0)
     }
     #[inline(always)]
     fn sqrt(self) -> Lanes {

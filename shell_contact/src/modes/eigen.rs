@@ -14,6 +14,9 @@ const BESIDE: f64 = 1e-3;
 /// Relative change of an eigenvalue at which the iteration ends.
 const SETTLED: f64 = 1e-13;
 
+/// The same where an eigenvalue only guides a bisection.
+const LOCATED: f64 = 1e-9;
+
 /// Shifts beyond this are not tried: the stiffest modes that a shell has are far below.
 const FARTHEST: f64 = 1e9;
 
@@ -69,7 +72,7 @@ impl AsymmetricModes<'_> {
     ) -> (ModeCount, f64) {
         let ends = self.ends(n, parity, Neutral::Pinned);
         let count = self.negative_below(&ends, n, 0.0);
-        (count, self.inverse_iteration(&ends, n, 0.0, x))
+        (count, self.iterate(&ends, n, 0.0, LOCATED, x))
     }
 
     /// The amplitudes of a mode found by `count_and_value`.
@@ -144,6 +147,20 @@ impl AsymmetricModes<'_> {
     /// The eigenpair nearest to `shift`, at which the matrix has just been factored; begins with
     /// the vector `x`, unless it is empty, and leaves the mode in it.
     fn inverse_iteration(&mut self, ends: &Ends, n: usize, shift: f64, x: &mut Vec<f64>) -> f64 {
+        let value = self.iterate(ends, n, shift, SETTLED, x);
+        self.rayleigh(ends, n, x).unwrap_or(value)
+    }
+
+    /// The same until the eigenvalue, an inverse Rayleigh quotient whose error is the square of the
+    /// vector's, changes by less than `tolerance`, relative.
+    fn iterate(
+        &mut self,
+        ends: &Ends,
+        n: usize,
+        shift: f64,
+        tolerance: f64,
+        x: &mut Vec<f64>,
+    ) -> f64 {
         self.masses.matrix(ends, n, &mut self.mass);
         let dim = self.band.dim();
         // any vector without symmetry; M keeps it to the unknowns of the class
@@ -167,13 +184,13 @@ impl AsymmetricModes<'_> {
             self.solve(x);
             // y = Mx̂ of unit size: 1/(μ − shift) = yᵀ K⁻¹ y
             let next = shift + 1.0 / (dot(x, &y));
-            let settled = (next - value).abs() <= SETTLED * (next.abs() + shift.abs());
+            let settled = (next - value).abs() <= tolerance * (next.abs() + shift.abs());
             value = next;
             if settled {
                 break;
             }
         }
-        self.rayleigh(ends, n, x).unwrap_or(value)
+        value
     }
 
     /// `xᵀKx/xᵀMx`, whose error is the square of the vector's. The band's factors are lost.

@@ -44,7 +44,7 @@ pub(super) struct Elements {
     inside: [Vec<Column>; 3],
 }
 
-/// The blocks of an element.
+/// The blocks of an element; those of a field with itself by their upper triangle.
 #[derive(Clone, Debug)]
 struct Element {
     even: [[Block<f64>; 4]; 3],
@@ -161,7 +161,8 @@ impl Elements {
 #[inline(always)]
 fn put(out: &mut [[f64; 12]; 12], f: usize, g: usize, value: impl Fn(usize, usize) -> f64) {
     for i in 0..4 {
-        for j in 0..4 {
+        // of a field with itself only the upper triangle is known
+        for j in if f == g { i } else { 0 }..4 {
             let x = value(i, j);
             out[3 * i + f][3 * j + g] = x;
             out[3 * j + g][3 * i + f] = x;
@@ -191,17 +192,21 @@ pub(super) fn assemble<L: Membrane, F: Potential>(
             second_variation(law, film, c, excess, &site, &place, &mut hessian);
             for (pair, &(f, g)) in EVEN.iter().enumerate() {
                 for k in 0..2 {
-                    block(cell, &hessian[2 * k], f, g, &mut lanes);
-                    add(&lanes, &mut element.even[k][pair]);
+                    if f == g {
+                        own_block(cell, &hessian[2 * k], f, &mut lanes);
+                    } else {
+                        block(cell, &hessian[2 * k], f, g, &mut lanes);
+                    }
+                    add(&lanes, f == g, &mut element.even[k][pair]);
                 }
                 values(cell, hessian[4][f][g], &mut lanes);
-                add(&lanes, &mut element.even[2][pair]);
+                add(&lanes, f == g, &mut element.even[2][pair]);
             }
             for (pair, &(f, g)) in ODD.iter().enumerate() {
                 block(cell, &hessian[1], f, g, &mut lanes);
-                add(&lanes, &mut element.odd[0][pair]);
+                add(&lanes, false, &mut element.odd[0][pair]);
                 values(cell, hessian[3][f][g], &mut lanes);
-                add(&lanes, &mut element.odd[1][pair]);
+                add(&lanes, false, &mut element.odd[1][pair]);
             }
         }
         out.set(e, &element);
@@ -224,6 +229,22 @@ fn block(cell: &Cell, h: &[[Lanes; 9]; 9], f: usize, g: usize, out: &mut Block<L
     }
 }
 
+/// The same for a field with itself, upper triangle.
+#[inline(never)]
+fn own_block(cell: &Cell, h: &[[Lanes; 9]; 9], f: usize, out: &mut Block<Lanes>) {
+    let n = &cell.basis;
+    for j in 0..4 {
+        let mut half = [Lanes::ZERO; 3];
+        for d in 0..3 {
+            let row = &h[3 * d + f];
+            half[d] = row[f] * n[0][j] + row[3 + f] * n[1][j] + row[6 + f] * n[2][j];
+        }
+        for i in 0..=j {
+            out[i][j] = n[0][i] * half[0] + n[1][i] * half[1] + n[2][i] * half[2];
+        }
+    }
+}
+
 /// The same where no derivative takes part: so it is for `n³` and `n⁴`.
 #[inline(never)]
 fn values(cell: &Cell, h: Lanes, out: &mut Block<Lanes>) {
@@ -236,9 +257,12 @@ fn values(cell: &Cell, h: Lanes, out: &mut Block<Lanes>) {
     }
 }
 
-fn add(lanes: &Block<Lanes>, out: &mut Block<f64>) {
-    for (out, lanes) in out.iter_mut().flatten().zip(lanes.iter().flatten()) {
-        *out += lanes.sum();
+#[inline(always)]
+fn add(lanes: &Block<Lanes>, upper: bool, out: &mut Block<f64>) {
+    for i in 0..4 {
+        for j in if upper { i } else { 0 }..4 {
+            out[i][j] += lanes[i][j].sum();
+        }
     }
 }
 
