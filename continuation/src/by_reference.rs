@@ -37,6 +37,18 @@ impl<P: Problem + ?Sized> Problem for &P {
         (**self).parameter_derivative(u, p, which, out)
     }
 
+    fn derivative_error(
+        &self,
+        u: &[f64],
+        p: &[f64],
+        which: ParamId,
+        du: &[f64],
+        dp: f64,
+        out: &mut [f64],
+    ) -> Result<(), EvalError> {
+        (**self).derivative_error(u, p, which, du, dp, out)
+    }
+
     fn linearise(
         &self,
         u: &[f64],

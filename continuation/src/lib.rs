@@ -4,9 +4,9 @@ pub mod branch;
 mod by_reference;
 pub mod codim2;
 pub mod deflation;
-mod dense_problem;
 mod derivative_check;
 pub mod diagram;
+mod differences;
 #[cfg(feature = "dual")]
 mod dual_problem;
 mod events;
@@ -16,6 +16,7 @@ mod modes;
 mod near;
 pub mod newton;
 pub mod problem;
+mod residual_problem;
 pub mod samples;
 mod settings;
 mod singular;
@@ -23,10 +24,9 @@ mod step;
 pub mod tracer;
 
 pub use branch::{
-    Branch, Criticality, Crossing, Detail, Direction, Eigenvector, Event, EventKind, FoldForm,
-    HopfForm, Point, RestartPoint, Shape, Statistics, Stop, StopReason,
+    Branch, Criticality, Crossing, Detail, Direction, Event, EventKind, FoldForm, HopfForm, Point,
+    Shape, Statistics, Stop, StopReason,
 };
-pub use dense_problem::DenseProblem;
 pub use derivative_check::{DerivativeCheck, check_derivatives};
 #[cfg(feature = "dual")]
 pub use dual_problem::{DualProblem, Number, Residual};
@@ -36,6 +36,7 @@ pub use modes::{Modes, modes};
 pub use near::{NearBifurcation, NearError, NearKind, NearSettings, near_bifurcations};
 pub use newton::{NewtonError, NewtonReport, NewtonSettings, newton};
 pub use problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints, Stability};
+pub use residual_problem::{BandProblem, DenseProblem, ResidualProblem, SparseProblem};
 pub use settings::{Settings, SettingsError};
 pub use step::Refusal;
 pub use tracer::{Progress, TraceError, Tracer, both_ways};

@@ -107,13 +107,17 @@ pub fn newton<P: Problem>(
         crate::problem::check_finite(&r).map_err(refuse)?;
         let floor = f64::EPSILON * jacobian.norm();
         let facts = jacobian.factor(floor);
+        if facts.perturbed > 0 || !floor.is_finite() {
+            finite_rows(&jacobian, &mut m).map_err(refuse)?;
+        }
         if facts.perturbed > 0 && r.iter().any(|x| *x != 0.0) {
             return Err(NewtonError::Singular { iterations });
         }
         du.copy_from_slice(&r);
         jacobian.solve(&mut du);
         let correction = length(&du, &mut m);
-        if !correction.is_finite() {
+        if !correction.is_finite() || !du.iter().all(|x| x.is_finite()) {
+            finite_rows(&jacobian, &mut m).map_err(refuse)?;
             return Err(NewtonError::Singular { iterations });
         }
         longest = longest.max(correction);
@@ -161,6 +165,13 @@ pub fn newton<P: Problem>(
         }
     }
     Err(NewtonError::TooMany { iterations: settings.max_iterations, correction: f64::NAN })
+}
+
+/// The first row of a matrix that holds something else than numbers, as an error: it is not singular.
+pub(crate) fn finite_rows<M: Matrix>(matrix: &M, scratch: &mut [f64]) -> Result<(), EvalError> {
+    let ones = vec![1.0; scratch.len()];
+    matrix.mul(&ones, scratch);
+    crate::problem::check_finite(scratch)
 }
 
 /// Whether a residual is no more than the rounding errors of its terms.

@@ -85,7 +85,9 @@ pub trait Problem {
     /// # Errors
     /// When `f` has no value there.
     fn jacobian(&self, u: &[f64], p: &[f64], j: &mut Self::Jacobian) -> Result<(), EvalError>;
-    /// `out = ∂f/∂p[which]`; `out` holds anything before.
+    /// `out = ∂f/∂p[which]`; `out` holds anything before. The default takes differences of
+    /// [`Problem::residual`], ten of them or more, with steps that are found anew each time, near 1e-13
+    /// for smooth `f`; it allocates.
     ///
     /// # Errors
     /// When `f` has no value there.
@@ -95,7 +97,29 @@ pub trait Problem {
         p: &[f64],
         which: ParamId,
         out: &mut [f64],
-    ) -> Result<(), EvalError>;
+    ) -> Result<(), EvalError> {
+        crate::differences::by_parameter(self, u, p, which, out).map(|_| ())
+    }
+
+    /// `out` = a bound, by component, of the error of `∂f/∂u du + ∂f/∂p[which] dp` as this problem
+    /// computes it: events say how much of it moves them. The default is zero, for derivatives that are
+    /// exact to rounding.
+    ///
+    /// # Errors
+    /// When `f` has no value there.
+    fn derivative_error(
+        &self,
+        u: &[f64],
+        p: &[f64],
+        which: ParamId,
+        du: &[f64],
+        dp: f64,
+        out: &mut [f64],
+    ) -> Result<(), EvalError> {
+        let _ = (u, p, which, du, dp);
+        out.fill(0.0);
+        Ok(())
+    }
 
     /// Residual and Jacobian together, for problems in which they share work. Must equal both
     /// computed apart.

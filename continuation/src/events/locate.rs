@@ -88,7 +88,8 @@ pub(crate) fn locate<P: Problem>(
         interpolate(a, b, h, bend, best, x);
         core.correct(Constraint::Plane(a, best), x, Precision::Event)?;
     }
-    let error = search.error().max(correction).max(f64::EPSILON * (1.0 + best));
+    // the secant's own error is a small part of what it says
+    let error = 1.25 * search.error().max(correction).max(f64::EPSILON * (1.0 + best));
     Ok(Located { at: best, error })
 }
 

@@ -5,14 +5,20 @@ use crate::branch::FoldForm;
 use crate::problem::{EvalError, Problem};
 use crate::step::{State, dot};
 
-/// `p″ = −ψᵀ F_zz[t, t] / ψᵀ F_p` along the unit tangent `t`, with `left` = `ψ / ψᵀ F_p`.
+/// `p″ = −ψᵀ F_zz[t, t] / ψᵀ F_p` along the unit tangent `t`, with `left` = `ψ / ψᵀ F_p`; and how far
+/// errors of the problem's derivatives may have moved the fold, as a scaled length.
 pub(crate) fn fold_form<P: Problem>(
     probe: &mut Probe<'_, P>,
     x: &State,
     left: &[f64],
-) -> Result<FoldForm, EvalError> {
+) -> Result<(FoldForm, f64), EvalError> {
     let z = Extended { u: x.u.clone(), p: x.p };
     let t = Extended { u: x.tu.clone(), p: x.tp };
     let second = probe.second(&z, &t, 1.0, &[&t])?;
-    Ok(FoldForm { curvature: -dot(left, &second[0]) / (x.length * x.length) })
+    let along = -dot(left, &second[0]);
+    // what errors of the derivatives do to dp/ds, and so to its zero
+    let missed = probe.derivative_error(&z, &t)?;
+    let missed: f64 = missed.iter().zip(left).map(|(e, w)| e * w.abs()).sum();
+    let moved = if missed > 0.0 { missed / along.abs() } else { 0.0 };
+    Ok((FoldForm { curvature: along / (x.length * x.length) }, moved))
 }

@@ -7,7 +7,7 @@
 //! `l₁ = Re pᴴ[C(q,q,q̄) − 2B(q, A₀⁻¹B(q,q̄)) + B(q̄, (2iωM − A₀)⁻¹B(q,q))] / (2ω)`, `A₀ = f_u`.
 
 use super::probe::{Extended, Probe};
-use crate::branch::{Criticality, Eigenvector, HopfForm};
+use crate::branch::{Criticality, HopfForm};
 use crate::events::{bend, interpolate};
 use crate::linalg::{Bordered, Matrix};
 use crate::problem::{EvalError, Problem};
@@ -16,14 +16,13 @@ use crate::step::{Constraint, Core, Precision, Refusal, State, dot};
 const MAX_ITERATIONS: usize = 10;
 
 /// A Hopf point on the traced branch.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct HopfPoint {
     /// Scaled distance from the step's first end.
     pub(crate) at: f64,
     /// Estimated error, as a scaled length.
     pub(crate) error: f64,
     pub(crate) form: Option<HopfForm>,
-    pub(crate) vector: Option<Eigenvector>,
 }
 
 /// Polishes a Hopf point near the scaled distance `at` from `a`, with eigenvalues near `±iω`.
@@ -74,11 +73,17 @@ pub(crate) fn locate_hopf<P: Problem>(
             if !(0.0..=h).contains(&at) {
                 return Ok(None);
             }
-            let vector = critical.as_ref().map(Critical::eigenvector);
+            // what errors of the derivatives do to g, and so to the location
+            let determinant = g_s.0 * g_omega.0 + g_s.1 * g_omega.1;
+            let mut moved = 0.0;
+            if let Some(found) = &critical {
+                let missed = found.missed(&mut probe, &z).map_err(Refusal::Evaluation)?;
+                moved = missed * cosine * g_omega.0.hypot(g_omega.1) / determinant.abs();
+            }
             let form = critical.and_then(|c| normal_form(&mut probe, &z, &t, omega, &c).ok());
             core.statistics.newton_iterations += probe.assemblies;
-            let error = step.abs().max(f64::EPSILON);
-            return Ok(Some(HopfPoint { at, error, form: form.flatten(), vector }));
+            let error = step.abs().max(f64::EPSILON) + moved;
+            return Ok(Some(HopfPoint { at, error, form: form.flatten() }));
         }
     }
     Ok(None)
@@ -176,12 +181,12 @@ impl<P: Problem> Critical<P> {
         (Extended { u: a, p: 0.0 }, Extended { u: b, p: 0.0 }, p)
     }
 
-    /// The right eigenvector, of length 1.
-    fn eigenvector(&self) -> Eigenvector {
-        let mut q = self.right.clone();
-        q.normalise();
-        let (re, im) = q.split();
-        Eigenvector { re, im }
+    /// A bound of what errors of the problem's own derivatives change of `g`.
+    fn missed(&self, probe: &mut Probe<'_, P>, z: &Extended) -> Result<f64, EvalError> {
+        let (re, im) = self.parts();
+        let errors = [probe.derivative_error(z, &re)?, probe.derivative_error(z, &im)?];
+        let size = |(w, (a, b)): (&[f64], (&f64, &f64))| w[0].hypot(w[1]) * (a + b);
+        Ok(self.left.0.chunks_exact(2).zip(errors[0].iter().zip(&errors[1])).map(size).sum())
     }
 
     /// The right vector's real and imaginary parts.

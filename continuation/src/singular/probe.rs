@@ -153,6 +153,18 @@ impl<'a, P: Problem> Probe<'a, P> {
         Ok(())
     }
 
+    /// A bound, by component, of what the problem's own derivatives miss of `[F_u F_p] v` at `z`.
+    pub(crate) fn derivative_error(
+        &mut self,
+        z: &Extended,
+        v: &Extended,
+    ) -> Result<Vec<f64>, EvalError> {
+        self.p[self.which.0] = z.p;
+        let mut error = vec![0.0; self.dim()];
+        self.problem.derivative_error(&z.u, &self.p, self.which, &v.u, v.p, &mut error)?;
+        Ok(error)
+    }
+
     fn stencil(
         &mut self,
         z: &Extended,

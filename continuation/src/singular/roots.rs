@@ -47,6 +47,15 @@ const FLAT: f64 = 1e-6;
 
 /// All `(ξ, λ)`, one of each pair `±ξ`. `None` where every direction solves the equations.
 pub(super) fn solutions(d: &Forms, a: &Forms) -> Option<Vec<(Vec<f64>, f64)>> {
+    // that directions in no relation to the forms solve them is seen before any search: of a family of
+    // solutions it would find as many as rounding makes regular
+    let off = |seed| {
+        let x = normalised((0..d.k).map(|i| super::arbitrary(seed, i)).collect())?;
+        Some(residual(d, a, &x, multiplier(d, a, &x)))
+    };
+    if (1..=3).all(|seed| off(seed).is_some_and(|r| r <= FLAT * d.size())) {
+        return None;
+    }
     let directions = if d.k == 2 { binary(d, a)? } else { search(d, a) };
     let mut found: Vec<(Vec<f64>, f64)> = Vec::new();
     for start in directions {

@@ -167,7 +167,9 @@ impl<'a, P: Problem> Core<'a, P> {
             self.bordered.solve(&mut self.jacobian, &mut self.du, &mut g);
             self.problem.metric(&self.du, &mut self.mdu);
             let correction = w.norm(&self.mdu, &self.du, g[0]);
-            if !correction.is_finite() {
+            if !correction.is_finite() || !self.du.iter().all(|x| x.is_finite()) {
+                crate::newton::finite_rows(&self.jacobian, &mut self.mdu)
+                    .map_err(Refusal::Evaluation)?;
                 return Err(Refusal::Singular);
             }
             for (u, du) in x.u.iter_mut().zip(&self.du) {

@@ -18,7 +18,6 @@
 mod both_ways;
 mod closure;
 mod input;
-mod restart;
 mod snapshot;
 mod special;
 mod switching;
