@@ -241,6 +241,15 @@ pub trait SpecialPoints {
     /// Where that problem has no value.
     fn others(&self, u: &[f64], p: &[f64]) -> Result<Others, EvalError>;
 
+    /// The natural size of the unknowns, in the metric.
+    fn scale(&self) -> Option<f64> {
+        None
+    }
+
+    /// The same for a curve that is measured by how far its unknowns move, where they do not.
+    fn fallback_scale(&self) -> Option<f64> {
+        None
+    }
     /// What a zero of an observable is, if it is a special point.
     fn zero(&self, observable: usize) -> Option<EventKind>;
 

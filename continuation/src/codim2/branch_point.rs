@@ -486,6 +486,10 @@ impl<P: Problem> SpecialPoints for BranchPointCurve<'_, P> {
         Ok(Others::default())
     }
 
+    fn fallback_scale(&self) -> Option<f64> {
+        Some(self.base.scales.unknowns)
+    }
+
     fn zero(&self, _observable: usize) -> Option<EventKind> {
         None
     }

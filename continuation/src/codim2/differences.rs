@@ -32,6 +32,13 @@ pub(super) struct Along<'v> {
     pub(super) unit: f64,
 }
 
+/// The step of a difference along a curve, `step` in its scales, but no more of the second parameter
+/// than that part of its value: it may be one that has to be positive.
+pub(super) fn slope_step(step: f64, q: f64, dq: f64) -> f64 {
+    let most = step * (q / dq).abs();
+    if most > 0.0 { step.min(most.max(1e-4 * step)) } else { step }
+}
+
 /// Work space of the differences along one direction.
 pub(super) struct Differences<P: Problem> {
     shifted: P::Jacobian,

@@ -1,6 +1,6 @@
 //! Curves of folds.
 
-use super::differences::{Along, Differences};
+use super::differences::{Along, Differences, slope_step};
 use super::null::Null;
 use super::trace::{Curve, trace};
 use super::underlying::{CurveError, Underlying};
@@ -281,7 +281,8 @@ impl<'a, P: Problem> FoldCurve<'a, P> {
         if work.along.iter().eq(key.clone()) {
             return Ok(());
         }
-        for (side, sign) in [(0, SLOPE), (1, -SLOPE)] {
+        let step = slope_step(SLOPE, curve[which.0], dq);
+        for (side, sign) in [(0, step), (1, -step)] {
             let mut place = std::mem::take(&mut work.shifted);
             let mut p = std::mem::take(&mut work.curve_p);
             place.iter_mut().zip(x).zip(dx).for_each(|((y, x), d)| *y = x + sign * d);
@@ -292,7 +293,7 @@ impl<'a, P: Problem> FoldCurve<'a, P> {
             work.tests[side] = tests?;
         }
         for k in 0..2 {
-            work.slopes[k] = (work.tests[0][k] - work.tests[1][k]) / (2.0 * SLOPE);
+            work.slopes[k] = (work.tests[0][k] - work.tests[1][k]) / (2.0 * step);
         }
         work.along.clear();
         work.along.extend(key);
@@ -488,6 +489,10 @@ impl<P: Problem> SpecialPoints for FoldCurve<'_, P> {
         let unstable = values.iter().filter(|(re, _)| sign * re > 0.0).count();
         let unstable = Some(unstable.saturating_sub(multipliers));
         Ok(Others { unstable, certified: true, values })
+    }
+
+    fn scale(&self) -> Option<f64> {
+        Some(self.base.scales.unknowns)
     }
 
     fn zero(&self, observable: usize) -> Option<EventKind> {

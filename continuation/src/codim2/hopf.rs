@@ -1,11 +1,11 @@
 //! Curves of Hopf points.
 
-use super::differences::{Along, Differences};
+use super::differences::{Along, Differences, slope_step};
 use super::pair::{LEFT, PairNull, RIGHT};
 use super::takens;
 use super::trace::{Curve, trace};
 use super::underlying::{CurveError, Underlying};
-use crate::branch::{Branch, Event, EventKind};
+use crate::branch::{Branch, Event, EventKind, Point};
 use crate::events::Watch;
 use crate::linalg::{Arrow, Matrix};
 use crate::modes::ModeSolver;
@@ -181,8 +181,46 @@ impl<'a, P: Problem> HopfCurve<'a, P> {
         let second = self.base.parameters[self.base.second_of_curve().0].name;
         let start = (second, &self.start[..], &self.base.start()[..]);
         let mut curve = trace(self, start, settings, &all, observer)?;
+        self.confirm(&mut curve);
         takens::finish(self, &mut curve, LAST * omega);
         Ok(curve)
+    }
+
+    /// Drops zeros of the first Lyapunov coefficient on whose sides it is not known to have different
+    /// signs: where it tends to zero its errors change sign.
+    fn confirm(&self, curve: &mut Curve) {
+        let n = self.base.problem.dim();
+        for index in (0..curve.branch.events.len()).rev() {
+            let event = &curve.branch.events[index];
+            if event.kind != EventKind::GeneralisedHopf {
+                continue;
+            }
+            let points = &curve.branch.points;
+            let at = &points[event.point];
+            let apart = |other: &&Point| (other.s - at.s).abs() > 1e2 * event.error_estimate;
+            let before = points[..event.point].iter().rev().find(apart);
+            let after = points[event.point + 1..].iter().find(apart);
+            let mut signs = [before, after].map(|side| {
+                side.map_or(0.0, |side| {
+                    let mut p = self.base.start();
+                    p[self.base.second_of_curve().0] = side.p;
+                    let work = &mut *self.work.borrow_mut();
+                    let value = self.lyapunov(work, &side.u[..n + 2], &p);
+                    // a sign that the error allows
+                    value.ok().filter(|l| l.abs() > 2.0 * work.error).map_or(0.0, f64::signum)
+                })
+            });
+            // at an end of the curve one side has to do
+            if before.is_none() && after.is_none() {
+                continue;
+            }
+            if before.is_none() || after.is_none() {
+                signs = [signs[0] - signs[1], signs[1] - signs[0]];
+            }
+            if signs[0] * signs[1] >= 0.0 {
+                curve.forget(index);
+            }
+        }
     }
 
     fn bring(
@@ -394,13 +432,14 @@ impl<P: Problem> Problem for HopfCurve<'_, P> {
         let work = &mut *self.work.borrow_mut();
         if k == self.test {
             let mut sides = [0.0; 2];
-            for (value, step) in sides.iter_mut().zip([SLOPE, -SLOPE]) {
+            let eps = slope_step(SLOPE, p[which.0], dq);
+            for (value, step) in sides.iter_mut().zip([eps, -eps]) {
                 let place: Vec<f64> = x.iter().zip(dx).map(|(x, d)| x + step * d).collect();
                 let mut q = p.to_vec();
                 q[which.0] += step * dq;
                 *value = self.lyapunov(work, &place, &q)?;
             }
-            return Ok(Some((sides[0] - sides[1]) / (2.0 * SLOPE)));
+            return Ok(Some((sides[0] - sides[1]) / (2.0 * eps)));
         }
         self.base.fill(x[n], p, &mut work.p);
         work.level = Level::Nothing;
@@ -430,6 +469,10 @@ impl<P: Problem> SpecialPoints for HopfCurve<'_, P> {
         }
         let unstable = Some(values.iter().filter(|(re, _)| *re > 0.0).count());
         Ok(Others { unstable, certified, values })
+    }
+
+    fn scale(&self) -> Option<f64> {
+        Some(self.base.scales.unknowns)
     }
 
     fn zero(&self, observable: usize) -> Option<EventKind> {

@@ -15,6 +15,8 @@ use std::ops::ControlFlow;
 
 /// How much farther than extrapolated the point may be.
 const FARTHEST: f64 = 5.0;
+/// Ratio of the frequencies at the two points from which it is extrapolated, at least.
+const APART: f64 = 1.2;
 /// How far along the fold curve it is sought, in distances by which the last point is off.
 const SEARCH: f64 = 30.0;
 
@@ -61,7 +63,11 @@ fn search<P: Problem>(
     let points = &curve.branch.points;
     let n = hopf.base.problem.dim();
     let end = &points[at];
-    let inner = points.get(if first { 1 } else { at.checked_sub(1)? })?;
+    // far enough from the end for the difference to say something
+    let apart = |point: &&Point| point.u[n + 1] > APART * end.u[n + 1];
+    let inner =
+        if first { points[1..].iter().find(apart) } else { points[..at].iter().rev().find(apart) };
+    let inner = inner?;
     let squares = (end.u[n + 1].powi(2), inner.u[n + 1].powi(2));
     let weight = squares.0 / (squares.1 - squares.0);
     if !(weight > 0.0 && weight < 10.0) {

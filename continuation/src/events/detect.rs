@@ -167,11 +167,13 @@ impl Detector {
         self.magnitude = magnitude;
     }
 
-    /// Learns the magnitudes of observables from an accepted state.
-    pub(crate) fn learn(&mut self, x: &State) {
-        for (m, v) in self.magnitude.iter_mut().zip(&x.values) {
-            if v.is_finite() {
-                *m = m.max(v.abs());
+    /// Learns the magnitudes of observables from two successive states: one of them alone may lie
+    /// next to a pole.
+    pub(crate) fn learn(&mut self, a: &State, b: &State) {
+        for (m, (a, b)) in self.magnitude.iter_mut().zip(a.values.iter().zip(&b.values)) {
+            let both = a.abs().min(b.abs());
+            if both.is_finite() {
+                *m = m.max(both);
             }
         }
     }

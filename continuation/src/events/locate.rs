@@ -21,7 +21,7 @@ pub(crate) struct Located {
     pub(crate) error: f64,
 }
 
-const MAX_EVALUATIONS: usize = 60;
+pub(super) const MAX_EVALUATIONS: usize = 60;
 
 /// Locates `candidate` between `a` and `b`, a scaled distance `h` apart; its state goes to `x`.
 pub(crate) fn locate<P: Problem>(

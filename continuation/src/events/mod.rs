@@ -4,10 +4,12 @@ mod detect;
 mod hermite;
 mod locate;
 mod root;
+mod watched;
 
 pub(crate) use detect::{Beside, Candidate, Detector, Role};
 pub(crate) use hermite::basis;
 pub(crate) use locate::{Located, bend, interpolate, locate};
+pub(crate) use watched::locate_watched;
 
 use serde::{Deserialize, Serialize};
 

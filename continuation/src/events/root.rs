@@ -27,6 +27,11 @@ impl Search {
         (self.x1 - self.x2).abs()
     }
 
+    /// Difference between the values at its ends.
+    pub(crate) fn spread(&self) -> f64 {
+        (self.f1 - self.f2).abs()
+    }
+
     /// The end with the smaller value.
     pub(crate) fn best(&self) -> (f64, f64) {
         if self.f1.abs() <= self.f2.abs() { (self.x1, self.f1) } else { (self.x2, self.f2) }

@@ -69,6 +69,13 @@ pub(crate) struct Core<'a, P: Problem> {
     observed: [Vec<f64>; 2],
 }
 
+/// The scale of the parameter at the start of a curve of special points, of which no range is
+/// expected: the value that it has there, or what is typical of it where that is nearly zero.
+pub(crate) fn curve_scale<P: Problem>(problem: &P, which: ParamId, start: f64) -> f64 {
+    let typical = problem.parameters()[which.0].scale.abs();
+    if start.abs() > 1e-6 * typical { start.abs() } else { typical }
+}
+
 impl<'a, P: Problem> Core<'a, P> {
     pub(crate) fn new(
         problem: &'a P,
@@ -340,6 +347,17 @@ impl<'a, P: Problem> Core<'a, P> {
     fn weigh(&mut self, x: &State, range: f64) -> Weights {
         if let Some(scale) = self.problem.unknown_scale(self.which) {
             return Weights { unknowns: scale, parameter: scale };
+        }
+        if let Some(curve) = self.problem.special_points() {
+            let parameter = curve_scale(self.problem, self.which, x.p);
+            if let Some(unknowns) = curve.scale() {
+                return Weights { unknowns, parameter };
+            }
+            if let Some(fallback) = curve.fallback_scale() {
+                let reach = self.reach(x, parameter);
+                let moves = reach.is_finite() && reach > 1e-8 * fallback;
+                return Weights { unknowns: if moves { reach } else { fallback }, parameter };
+            }
         }
         self.problem.metric(&x.u, &mut self.mdu);
         let size = super::dot(&self.mdu, &x.u).max(0.0).sqrt();

@@ -7,7 +7,7 @@ mod stability;
 mod state;
 mod weights;
 
-pub(crate) use corrector::{Constraint, Core, Precision};
+pub(crate) use corrector::{Constraint, Core, Precision, curve_scale};
 pub(crate) use judge::judge;
 pub(crate) use size::StepSize;
 pub(crate) use stability::hessian_inertia;

@@ -12,22 +12,25 @@ const SAME: f64 = 0.02;
 
 impl<P: Problem> Tracer<'_, P> {
     /// Whether the step of scaled length `h` closes the branch: over its start, in which
-    /// direction, or over the end of its other half.
-    pub(super) fn closes(&mut self, h: f64) -> Option<StopReason> {
+    /// direction, or over the end of its other half; and at which part of the step.
+    pub(super) fn closes(&mut self, h: f64) -> Option<(StopReason, f64)> {
         let Self { core, current, trial, start, finish, work, .. } = self;
-        if self.left_start && passes(core, current, trial, start, work, h) {
+        if self.left_start
+            && let Some(at) = passes(core, current, trial, start, work, h)
+        {
             let w = core.weights;
             let direction = w.dot(&start.mtu, start.tp, &current.tu, current.tp);
             let reason =
                 if direction > 0.0 { StopReason::ClosedLoop } else { StopReason::ReturnedToStart };
-            return Some(reason);
+            return Some((reason, at));
         }
-        let closed = finish.as_ref().is_some_and(|end| passes(core, current, trial, end, work, h));
-        closed.then_some(StopReason::ClosedLoop)
+        let end = finish.as_ref()?;
+        let at = passes(core, current, trial, end, work, h)?;
+        Some((StopReason::ClosedLoop, at))
     }
 }
 
-/// Whether the step of scaled length `h` from `current` to `trial` passes over `at`.
+/// Whether the step of scaled length `h` from `current` to `trial` passes over `at`, and where.
 fn passes<P: Problem>(
     core: &mut Core<'_, P>,
     current: &State,
@@ -35,7 +38,7 @@ fn passes<P: Problem>(
     at: &State,
     work: &mut State,
     h: f64,
-) -> bool {
+) -> Option<f64> {
     let w = core.weights;
     let side = |x: &State| {
         let du = x.u.iter().zip(&at.u).zip(&at.mtu);
@@ -43,11 +46,11 @@ fn passes<P: Problem>(
         along / (w.unknowns * w.unknowns) + at.tp * (x.p - at.p) / (w.parameter * w.parameter)
     };
     if side(current) * side(trial) > 0.0 {
-        return false;
+        return None;
     }
     let (distance, ..) = core.secant(current, at);
     if distance > 1.5 * h {
-        return false;
+        return None;
     }
     // the point of the step as far from its beginning as the place is
     let [w0, w1, w2, w3] = basis((distance / h).min(1.0));
@@ -57,5 +60,10 @@ fn passes<P: Problem>(
     }
     work.p = w0 * current.p + w1 * current.tp + w2 * trial.p + w3 * trial.tp;
     let (off, ..) = core.secant(work, at);
-    off <= SAME * h
+    // as far along the tangent
+    let du = at.u.iter().zip(&current.u).zip(&current.mtu);
+    let along: f64 = du.map(|((a, b), m)| (a - b) * m).sum();
+    let along = along / (w.unknowns * w.unknowns)
+        + current.tp * (at.p - current.p) / (w.parameter * w.parameter);
+    (off <= SAME * h).then_some(along)
 }

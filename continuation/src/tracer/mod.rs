@@ -21,6 +21,7 @@ mod input;
 mod snapshot;
 mod special;
 mod switching;
+mod zoom;
 
 pub use both_ways::both_ways;
 pub use input::{Progress, TraceError};
@@ -31,7 +32,9 @@ use crate::events::{Beside, Detector, Watch};
 use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem, Stability};
 use crate::settings::{Settings, SettingsError};
-use crate::step::{Constraint, Core, Precision, Refusal, State, StepSize, Weights, judge};
+use crate::step::{
+    Constraint, Core, Precision, Refusal, State, StepSize, Weights, curve_scale, judge,
+};
 use input::{check, increases, range, unknown_observable};
 use special::Special;
 use std::collections::VecDeque;
@@ -58,12 +61,16 @@ pub struct Tracer<'a, P: Problem> {
     trial: State,
     work: State,
     left_start: bool,
+    // until the first step is done; not away from a branch point, whose scales are known
+    first: bool,
     // set until the first step away from a branch point is done
     departure: Option<Departure>,
     // the latest step that crossed to the other orientation, and where it began
     crossing: Option<f64>,
     anchor: State,
     anchor_s: f64,
+    // the scales that were expected, while those of the branch are smaller
+    expected: Option<Weights>,
     s: f64,
     running_unstable: Option<usize>,
     queue: VecDeque<Point>,
@@ -119,7 +126,11 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let report = newton(problem, &mut start.u, p, &NewtonSettings::default())
             .map_err(TraceError::Start)?;
 
-        let range = range(&settings, start.p, &parameters[which]);
+        let mut range = range(&settings, start.p, &parameters[which]);
+        if problem.special_points().is_some() && settings.target.is_none() {
+            // how wide the domain is says nothing of the curve
+            range = curve_scale(problem, ParamId(which), start.p);
+        }
         if let Some((lo, hi)) = settings.domain
             && !(lo..=hi).contains(&start.p)
         {
@@ -159,10 +170,12 @@ impl<'a, P: Problem> Tracer<'a, P> {
             trial: start.clone(),
             work: start.clone(),
             left_start: false,
+            first: true,
             departure: None,
             crossing: None,
             anchor: start.clone(),
             anchor_s: 0.0,
+            expected: None,
             s: 0.0,
             running_unstable: start.unstable,
             queue: VecDeque::new(),
@@ -171,7 +184,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             stop: None,
             start,
         };
-        tracer.detector.learn(&tracer.start);
+        tracer.detector.learn(&tracer.start, &tracer.start);
         let first = tracer.point(&tracer.start, 0.0, None, tracer.start.unstable);
         tracer.queue.push_back(first);
         if let Some((lo, hi)) = tracer.settings.domain {
@@ -196,7 +209,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             .map_err(|error| TraceError::Tangent(Refusal::Evaluation(error)))?;
         self.current.copy_from(&self.start);
         self.previous.copy_from(&self.start);
-        self.detector.learn(&self.start);
+        self.detector.learn(&self.start, &self.start);
         Ok(self)
     }
 
@@ -300,10 +313,10 @@ impl<'a, P: Problem> Tracer<'a, P> {
         if let Some(departure) = self.departure.take() {
             return self.depart(&departure);
         }
-        let length = self.current.length;
-        let shortest = self.size.shortest(length);
+        let mut length = self.current.length;
+        let mut shortest = self.size.shortest(length);
         let mut h = self.size.h.clamp(shortest, self.size.longest(length).max(shortest));
-        let first = h;
+        let first = h * length;
         loop {
             let final_say = h <= self.size.resolution(length);
             match self.attempt(h, final_say) {
@@ -324,6 +337,11 @@ impl<'a, P: Problem> Tracer<'a, P> {
                         Refusal::OnSpecialPoint => 0.618,
                         _ => 0.5,
                     };
+                    if let Some(zoomed) = self.zoom_in(&refusal, h) {
+                        h = zoomed;
+                        length = self.current.length;
+                        shortest = self.size.shortest(length);
+                    }
                     if h < shortest && self.leap(&refusal) {
                         return;
                     }
@@ -335,7 +353,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
                             format!(
                                 "at {name} = {p:.10} steps from {:.1e} down to {:.1e} were refused, \
                                  the last because: {refusal}",
-                                first * length,
+                                first,
                                 2.0 * h * length,
                             ),
                         );
@@ -380,8 +398,16 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let s_trial = self.s + self.metric_distance();
         // before the location, whose result is left in the same work space
         let returned = self.closes(h);
-        let special = self.locate_all(h, final_say)?;
+        let mut special = self.locate_all(h, final_say)?;
+        let returned = returned.map(|(reason, at)| {
+            // what lies beyond was met at the beginning; a special point at the start itself is met
+            special.retain(|one| one.place.at <= at + 1e-4 * h);
+            reason
+        });
+        let length = self.trial.length;
         self.accept(h, &special, s_trial, returned)?;
+        // by scales that the step has changed
+        let h = if self.expected.is_some() { h * length / self.current.length } else { h };
         let length = self.current.length;
         self.size.accept(h, &quality, &self.settings, length);
         Ok(())
@@ -439,12 +465,12 @@ impl<'a, P: Problem> Tracer<'a, P> {
             }
             self.running_unstable = self.trial.unstable;
         }
-        self.detector.learn(&self.trial);
+        self.detector.learn(&self.current, &self.trial);
         self.s = s_trial;
         std::mem::swap(&mut self.previous, &mut self.current);
         std::mem::swap(&mut self.current, &mut self.trial);
         self.previous_h = h;
-        self.rescale();
+        self.rescale(h);
         if !self.left_start {
             let away = self.core.excursion(&self.current.u, &self.start.u);
             self.left_start =
@@ -453,20 +479,26 @@ impl<'a, P: Problem> Tracer<'a, P> {
         Ok(())
     }
 
-    /// Adapts the scale of the unknowns to their growing range.
-    fn rescale(&mut self) {
+    /// Adapts the scales after a step of scaled length `h`: that of the unknowns to their growing
+    /// range, and on a curve of special points, which no range is expected of, both.
+    fn rescale(&mut self, h: f64) {
+        if std::mem::take(&mut self.first) {
+            self.zoom(h);
+        }
+        self.zoom_out();
         if self.core.problem.unknown_scale(self.core.which).is_some() {
             return;
         }
+        let mut weights = self.core.weights;
         let range = self.core.excursion(&self.current.u, &self.start.u);
-        if range > 2.0 * self.core.weights.unknowns {
-            self.core.weights.unknowns = range;
-            let x = &mut self.current;
-            let norm = self.core.weights.norm(&x.mtu, &x.tu, x.tp);
-            x.scale_tangent(1.0 / norm);
-            self.size.h *= norm;
-            self.previous_h = 0.0;
+        if range > 2.0 * weights.unknowns {
+            weights.unknowns = range;
         }
+        let range = (self.current.p - self.start.p).abs();
+        if self.core.problem.special_points().is_some() && range > weights.parameter {
+            weights.parameter = 2.0 * range;
+        }
+        self.measure(weights);
     }
 }
 

@@ -25,6 +25,10 @@ pub(crate) struct Snapshot {
     crossing: Option<f64>,
     anchor: State,
     anchor_s: f64,
+    #[serde(default)]
+    expected: Option<Weights>,
+    #[serde(default)]
+    first: bool,
     s: f64,
     running_unstable: Option<usize>,
     queue: VecDeque<Point>,
@@ -51,6 +55,8 @@ impl<P: Problem> Tracer<'_, P> {
             crossing: self.crossing,
             anchor: self.anchor.clone(),
             anchor_s: self.anchor_s,
+            expected: self.expected,
+            first: self.first,
             s: self.s,
             running_unstable: self.running_unstable,
             queue: self.queue.clone(),
@@ -91,6 +97,8 @@ impl<P: Problem> Tracer<'_, P> {
         self.crossing = from.crossing;
         self.anchor = from.anchor;
         self.anchor_s = from.anchor_s;
+        self.expected = from.expected;
+        self.first = from.first;
         self.s = from.s;
         self.running_unstable = from.running_unstable;
         self.queue = from.queue;

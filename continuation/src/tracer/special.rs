@@ -2,7 +2,7 @@
 
 use super::Tracer;
 use crate::branch::{Detail, Event, EventKind, StopReason};
-use crate::events::{Candidate, Located, Role, locate};
+use crate::events::{Candidate, Located, Role, locate, locate_watched};
 use crate::problem::Problem;
 use crate::singular::{Crossed, SEEDS, fold_form, locate_branch_points, locate_hopf};
 use crate::step::{Refusal, State};
@@ -45,8 +45,14 @@ impl<P: Problem> Tracer<'_, P> {
         for candidate in &candidates {
             let done = matches!(candidate, Candidate::BranchPoint { .. })
                 || (own_fold && *candidate == Candidate::Fold);
-            if !done {
-                located.push(self.locate_one(h, candidate)?);
+            if done {
+                continue;
+            }
+            match candidate {
+                Candidate::Value { .. } | Candidate::Extremum { .. } => {
+                    located.extend(self.locate_watched(h, candidate)?);
+                }
+                _ => located.push(self.locate_one(h, candidate)?),
             }
         }
         // a value passed shortly before the fold is passed again behind it: one step for each
@@ -137,6 +143,20 @@ impl<P: Problem> Tracer<'_, P> {
             }
         };
         Ok(Special { candidate: *candidate, place, detail, state: work.clone() })
+    }
+
+    /// Locates a zero or extremum of an observable, unless it has a pole or a jump there.
+    fn locate_watched(
+        &mut self,
+        h: f64,
+        candidate: &Candidate,
+    ) -> Result<Option<Special>, Refusal> {
+        let Self { core, current: a, trial: b, work, settings, .. } = self;
+        let place = locate_watched(core, (a, b), h, candidate, settings.event_tolerance, work)?;
+        Ok(place.map(|place| {
+            let state = work.clone();
+            Special { candidate: *candidate, place, detail: Detail::None, state }
+        }))
     }
 
     /// Records a located state as a point and, unless it only lands on a parameter value, as an

@@ -114,6 +114,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let old = probe.covector(&old);
         let bend = direction.bend * start.length * start.length;
         let mut tracer = Self::set_up(core, start, &p, settings, range)?;
+        tracer.first = false;
         tracer.departure = Some(Departure { old, bend });
         Ok(tracer)
     }

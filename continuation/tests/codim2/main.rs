@@ -9,6 +9,7 @@ mod invariance;
 #[allow(dead_code, reason = "the factors for one parameter")]
 #[path = "../scaled/mod.rs"]
 mod scaled;
+mod scales;
 
 use continuation::codim2::{Curve, CurveError, FoldCurve};
 use continuation::samples::Cusp;
