@@ -24,8 +24,8 @@ mod step;
 pub mod tracer;
 
 pub use branch::{
-    Branch, Criticality, Crossing, Detail, Direction, Event, EventKind, FoldForm, HopfForm, Point,
-    Shape, Statistics, Stop, StopReason,
+    Branch, Criticality, Crossing, Detail, Direction, Eigenvector, Event, EventKind, FoldForm,
+    HopfForm, Point, RestartPoint, Shape, Statistics, Stop, StopReason,
 };
 pub use derivative_check::{DerivativeCheck, check_derivatives};
 #[cfg(feature = "dual")]

@@ -81,7 +81,34 @@ pub struct Event {
     /// What the normal form says.
     #[serde(default)]
     pub detail: Detail,
+    /// The critical eigenvector of a fold or Hopf point, where it was computed. Those of a branch
+    /// point lie in its tangents: [`Event::critical_modes`] has them all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub eigenvectors: Vec<Eigenvector>,
 }
+
+/// An eigenvector of `f_u` (of `f_u − λ M` with a mass matrix) to a critical eigenvalue `λ`, 0 or
+/// `iω`; of Euclidean length 1.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Eigenvector {
+    /// The real part, of length [`crate::Problem::dim`].
+    pub re: Vec<f64>,
+    /// The imaginary part; empty where the eigenvalue is zero.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub im: Vec<f64>,
+}
+
+impl Eigenvector {
+    /// A real vector made one of length 1; `None` if it has none.
+    pub(crate) fn real(mut re: Vec<f64>) -> Option<Self> {
+        let length = re.iter().map(|x| x * x).sum::<f64>().sqrt();
+        re.iter_mut().for_each(|x| *x /= length);
+        re.iter().all(|x| x.is_finite()).then(|| Eigenvector { re, im: Vec::new() })
+    }
+}
+
+/// What is shorter than this, beside the vectors that it was made from, is rounding.
+const ROUNDING: f64 = 1e-6;
 
 impl Event {
     /// The branches that meet at a branch point.
@@ -89,6 +116,16 @@ impl Event {
         match &self.detail {
             Detail::Crossing(crossing) => Some(crossing),
             _ => None,
+        }
+    }
+
+    /// The critical eigenvectors, as far as they are known: the null vector of a fold, the complex
+    /// eigenvector of a Hopf point, and of a branch point those null vectors of `f_u`, orthonormal,
+    /// that lie in the span of its tangents.
+    pub fn critical_modes(&self) -> Vec<Eigenvector> {
+        match &self.detail {
+            Detail::Crossing(crossing) if self.eigenvectors.is_empty() => crossing.null_vectors(),
+            _ => self.eigenvectors.clone(),
         }
     }
 
@@ -170,6 +207,41 @@ pub struct Crossing {
     /// Tangents of the branches that leave, other than the one that was traced; each can be
     /// followed both ways.
     pub leaving: Vec<Direction>,
+}
+
+impl Crossing {
+    /// Null vectors of `f_u`: what the tangents say about directions in which the parameter stays.
+    fn null_vectors(&self) -> Vec<Eigenvector> {
+        let tangents: Vec<&Direction> =
+            std::iter::once(&self.traced).chain(&self.leaving).collect();
+        // all but the steepest lose their share of the parameter to it
+        let steepest = tangents.iter().max_by(|a, b| a.dp.abs().total_cmp(&b.dp.abs()));
+        let Some(steepest) = steepest.filter(|tangent| tangent.dp != 0.0) else {
+            return orthonormal(tangents.iter().map(|tangent| tangent.du.clone()));
+        };
+        let level = tangents.iter().filter(|tangent| !std::ptr::eq(**tangent, *steepest));
+        orthonormal(level.map(|tangent| {
+            let share = tangent.dp / steepest.dp;
+            tangent.du.iter().zip(&steepest.du).map(|(a, b)| a - share * b).collect()
+        }))
+    }
+}
+
+/// An orthonormal basis of what the vectors span.
+fn orthonormal(vectors: impl Iterator<Item = Vec<f64>>) -> Vec<Eigenvector> {
+    let mut basis: Vec<Eigenvector> = Vec::new();
+    let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    for mut vector in vectors {
+        let before = length(&vector);
+        for done in &basis {
+            let along: f64 = done.re.iter().zip(&vector).map(|(a, b)| a * b).sum();
+            vector.iter_mut().zip(&done.re).for_each(|(x, y)| *x -= along * y);
+        }
+        if length(&vector) > ROUNDING * before {
+            basis.extend(Eigenvector::real(vector));
+        }
+    }
+    basis
 }
 
 /// A tangent at a branch point, of unit length in the problem's metric: `du·M du + dp² = 1`.

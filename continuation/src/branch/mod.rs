@@ -1,9 +1,12 @@
 //! What a traced branch is: points, events, and why it stopped. Plain data, serialisable.
 
+mod access;
 mod event;
 
+pub use access::RestartPoint;
 pub use event::{
-    Criticality, Crossing, Detail, Direction, Event, EventKind, FoldForm, HopfForm, Shape,
+    Criticality, Crossing, Detail, Direction, Eigenvector, Event, EventKind, FoldForm, HopfForm,
+    Shape,
 };
 
 use serde::{Deserialize, Serialize};

@@ -7,7 +7,7 @@
 //! `l₁ = Re pᴴ[C(q,q,q̄) − 2B(q, A₀⁻¹B(q,q̄)) + B(q̄, (2iωM − A₀)⁻¹B(q,q))] / (2ω)`, `A₀ = f_u`.
 
 use super::probe::{Extended, Probe};
-use crate::branch::{Criticality, HopfForm};
+use crate::branch::{Criticality, Eigenvector, HopfForm};
 use crate::events::{bend, interpolate};
 use crate::linalg::{Bordered, Matrix};
 use crate::problem::{EvalError, Problem};
@@ -16,13 +16,14 @@ use crate::step::{Constraint, Core, Precision, Refusal, State, dot};
 const MAX_ITERATIONS: usize = 10;
 
 /// A Hopf point on the traced branch.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct HopfPoint {
     /// Scaled distance from the step's first end.
     pub(crate) at: f64,
     /// Estimated error, as a scaled length.
     pub(crate) error: f64,
     pub(crate) form: Option<HopfForm>,
+    pub(crate) vector: Option<Eigenvector>,
 }
 
 /// Polishes a Hopf point near the scaled distance `at` from `a`, with eigenvalues near `±iω`.
@@ -80,10 +81,11 @@ pub(crate) fn locate_hopf<P: Problem>(
                 let missed = found.missed(&mut probe, &z).map_err(Refusal::Evaluation)?;
                 moved = missed * cosine * g_omega.0.hypot(g_omega.1) / determinant.abs();
             }
+            let vector = critical.as_ref().map(Critical::eigenvector);
             let form = critical.and_then(|c| normal_form(&mut probe, &z, &t, omega, &c).ok());
             core.statistics.newton_iterations += probe.assemblies;
             let error = step.abs().max(f64::EPSILON) + moved;
-            return Ok(Some(HopfPoint { at, error, form: form.flatten() }));
+            return Ok(Some(HopfPoint { at, error, form: form.flatten(), vector }));
         }
     }
     Ok(None)
@@ -179,6 +181,14 @@ impl<P: Problem> Critical<P> {
         let p = Complex(self.left.0.chunks_exact(2).flat_map(turn).collect());
         let (a, b) = q.split();
         (Extended { u: a, p: 0.0 }, Extended { u: b, p: 0.0 }, p)
+    }
+
+    /// The right eigenvector, of length 1.
+    fn eigenvector(&self) -> Eigenvector {
+        let mut q = self.right.clone();
+        q.normalise();
+        let (re, im) = q.split();
+        Eigenvector { re, im }
     }
 
     /// A bound of what errors of the problem's own derivatives change of `g`.

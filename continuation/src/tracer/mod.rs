@@ -18,6 +18,7 @@
 mod both_ways;
 mod closure;
 mod input;
+mod restart;
 mod snapshot;
 mod special;
 mod switching;

@@ -1,7 +1,7 @@
 //! Special points of a step: located one after the other, then recorded.
 
 use super::Tracer;
-use crate::branch::{Detail, Event, EventKind, StopReason};
+use crate::branch::{Detail, Eigenvector, Event, EventKind, StopReason};
 use crate::events::{Candidate, Located, Role, locate, locate_watched};
 use crate::problem::Problem;
 use crate::singular::{Crossed, SEEDS, fold_form, locate_branch_points, locate_hopf};
@@ -15,6 +15,7 @@ pub(super) struct Special {
     pub(super) candidate: Candidate,
     pub(super) place: Located,
     detail: Detail,
+    eigenvectors: Vec<Eigenvector>,
     state: State,
 }
 
@@ -82,6 +83,7 @@ impl<P: Problem> Tracer<'_, P> {
             candidate: Candidate::BranchPoint { kernel: one.crossing.multiplicity },
             place: Located { at: one.at, error: one.error },
             detail: Detail::Crossing(one.crossing),
+            eigenvectors: Vec::new(),
             state: one.state,
         };
         match locate_branch_points(core, a, b, h, kernel, &SEEDS, final_say) {
@@ -105,7 +107,8 @@ impl<P: Problem> Tracer<'_, P> {
                     return Ok(());
                 }
                 let state = work.clone();
-                located.push(Special { candidate, place, detail: Detail::None, state });
+                let (detail, eigenvectors) = (Detail::None, Vec::new());
+                located.push(Special { candidate, place, detail, eigenvectors, state });
             }
         }
         Ok(())
@@ -115,6 +118,7 @@ impl<P: Problem> Tracer<'_, P> {
     fn locate_one(&mut self, h: f64, candidate: &Candidate) -> Result<Special, Refusal> {
         let Self { core, current: a, trial: b, work, settings, .. } = self;
         let tolerance = settings.event_tolerance;
+        let mut vector = None;
         let (place, detail) = match *candidate {
             Candidate::Hopf if core.problem.special_points().is_none() => {
                 let place = locate(core, a, b, h, candidate, BRACKET * h, work)?;
@@ -122,6 +126,7 @@ impl<P: Problem> Tracer<'_, P> {
                 match locate_hopf(core, a, b, h, at, omega, work)? {
                     Some(found) => {
                         let place = Located { at: found.at, error: found.error };
+                        vector = found.vector;
                         (place, found.form.map_or(Detail::None, Detail::Hopf))
                     }
                     None => (locate(core, a, b, h, candidate, tolerance, work)?, Detail::None),
@@ -131,6 +136,7 @@ impl<P: Problem> Tracer<'_, P> {
                 let mut place = locate(core, a, b, h, candidate, tolerance, work)?;
                 let mut detail = Detail::None;
                 if *candidate == Candidate::Fold {
+                    vector = Eigenvector::real(work.tu.clone());
                     let left = core.left_at_fold();
                     let mut probe = core.probe();
                     if let Ok((form, moved)) = fold_form(&mut probe, work, &left) {
@@ -142,7 +148,8 @@ impl<P: Problem> Tracer<'_, P> {
                 (place, detail)
             }
         };
-        Ok(Special { candidate: *candidate, place, detail, state: work.clone() })
+        let eigenvectors = vector.into_iter().collect();
+        Ok(Special { candidate: *candidate, place, detail, eigenvectors, state: work.clone() })
     }
 
     /// Locates a zero or extremum of an observable, unless it has a pole or a jump there.
@@ -155,7 +162,8 @@ impl<P: Problem> Tracer<'_, P> {
         let place = locate_watched(core, (a, b), h, candidate, settings.event_tolerance, work)?;
         Ok(place.map(|place| {
             let state = work.clone();
-            Special { candidate: *candidate, place, detail: Detail::None, state }
+            let eigenvectors = Vec::new();
+            Special { candidate: *candidate, place, detail: Detail::None, eigenvectors, state }
         }))
     }
 
@@ -168,7 +176,7 @@ impl<P: Problem> Tracer<'_, P> {
         s_trial: f64,
         last: bool,
     ) -> Result<(), Refusal> {
-        let Special { candidate, place, detail, state } = special;
+        let Special { candidate, place, detail, eigenvectors, state } = special;
         let s = self.s + (s_trial - self.s) * place.at / h;
         let before = self.running_unstable;
         let after = match candidate {
@@ -203,6 +211,7 @@ impl<P: Problem> Tracer<'_, P> {
                 residual,
                 error_estimate: (place.error + self.uncertainty(candidate, state)) * state.length,
                 detail: detail.clone(),
+                eigenvectors: eigenvectors.clone(),
             });
         }
         self.queue.push_back(point);
