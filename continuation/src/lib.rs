@@ -24,8 +24,8 @@ mod step;
 pub mod tracer;
 
 pub use branch::{
-    Branch, Criticality, Crossing, Detail, Direction, Eigenvector, Event, EventKind, FoldForm,
-    HopfForm, Point, RestartPoint, Shape, Statistics, Stop, StopReason,
+    Branch, Criticality, Crossing, Detail, Direction, Doubt, Eigenvector, Event, EventKind,
+    FoldForm, HopfForm, Point, RestartPoint, Shape, Statistics, Stop, StopReason,
 };
 pub use derivative_check::{DerivativeCheck, check_derivatives};
 #[cfg(feature = "dual")]
@@ -37,6 +37,6 @@ pub use near::{NearBifurcation, NearError, NearKind, NearSettings, near_bifurcat
 pub use newton::{NewtonError, NewtonReport, NewtonSettings, newton};
 pub use problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints, Stability};
 pub use residual_problem::{BandProblem, DenseProblem, ResidualProblem, SparseProblem};
-pub use settings::{Settings, SettingsError};
+pub use settings::{Counting, Settings, SettingsError};
 pub use step::Refusal;
 pub use tracer::{Progress, TraceError, Tracer, both_ways};

@@ -7,8 +7,9 @@
 //! spectrum; others by shift-invert Arnoldi about zero, which proves nothing: an eigenvalue far from
 //! zero with a large imaginary part can be missed.
 
-use crate::linalg::{Arnoldi, Dense, Lanczos, Matrix};
+use crate::linalg::{Arnoldi, Dense, EigenSettings, Lanczos, Matrix};
 use crate::problem::{EvalError, Problem, Stability, check_finite};
+use crate::settings::Counting;
 
 /// The most unstable eigenvalues of a state, with their modes.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,8 +63,14 @@ pub fn modes<P: Problem>(
     Ok(Modes { values, vectors, certified })
 }
 
-/// Dimension up to which every matrix is treated as dense.
-const SMALL: usize = 40;
+/// Dimension up to which all eigenvalues of any matrix are computed, as of a dense one: some
+/// 10 ms a point.
+const SMALL: usize = 120;
+/// The same where they are asked for; `n³` operations a point, half a second at 400 unknowns.
+const FULL: usize = crate::linalg::MAX_SPECTRUM;
+
+/// Solves after which the search for a few eigenvalues ends with what it has.
+const MOST_SOLVES: usize = 200;
 
 fn dense<A: Matrix>(a: &A) -> Dense {
     let n = a.dim();
@@ -86,6 +93,10 @@ pub(crate) struct ModeSolver<P: Problem> {
     lanczos: Option<Lanczos>,
     start: Vec<f64>,
     warm: bool,
+    /// Dimension up to which all eigenvalues are computed.
+    small: usize,
+    /// Whether the mass matrix is positive definite; `None` until it is asked for.
+    definite: Option<bool>,
 }
 
 impl<P: Problem> ModeSolver<P> {
@@ -106,13 +117,38 @@ impl<P: Problem> ModeSolver<P> {
             lanczos: None,
             start: Vec::new(),
             warm: false,
+            small: SMALL,
+            definite: None,
         }
+    }
+
+    /// The same with another way of counting.
+    pub(crate) fn counting(mut self, counting: Counting) -> Self {
+        self.small = match counting {
+            Counting::Automatic => SMALL,
+            Counting::Full => FULL,
+            Counting::Few => 0,
+        };
+        self
+    }
+
+    /// Whether the inertia of the Jacobian counts the eigenvalues of the pencil.
+    pub(crate) fn mass_is_definite(&mut self) -> bool {
+        let Some(mass) = &mut self.mass else { return true };
+        *self.definite.get_or_insert_with(|| {
+            let facts = mass.factor(f64::EPSILON * mass.norm());
+            let n = mass.dim();
+            let part = mass.symmetric_part();
+            let inertia = facts.inertia.is_some_and(|(_, positive)| positive == n);
+            let symmetric = part.is_some_and(|part| part.whole && part.positive == n);
+            facts.perturbed == 0 && (inertia || symmetric)
+        })
     }
 
     /// All eigenvalues, where a full spectrum is affordable.
     pub(crate) fn spectrum(&self, jacobian: &P::Jacobian) -> Option<Vec<(f64, f64)>> {
         jacobian.spectrum(self.mass.as_ref()).or_else(|| {
-            let small = jacobian.dim() <= SMALL;
+            let small = jacobian.dim() <= self.small;
             small.then(|| dense(jacobian).spectrum(self.mass.as_ref().map(dense).as_ref()))?
         })
     }
@@ -183,7 +219,9 @@ impl<P: Problem> ModeSolver<P> {
             None if energy => problem.metric(x, y),
             None => y.copy_from_slice(x),
         };
-        let arnoldi = Arnoldi::new(problem.dim(), count.min(problem.dim()));
+        let settings =
+            EigenSettings { tolerance: 1e-10, max_solves: MOST_SOLVES, ..EigenSettings::default() };
+        let arnoldi = Arnoldi::new(problem.dim(), count.min(problem.dim())).with_settings(settings);
         let found = arnoldi.nearest(0.0, product, |x| jacobian.solve(x), None);
         found.pairs.iter().filter(|pair| pair.converged).map(|pair| pair.value).collect()
     }

@@ -14,6 +14,26 @@ pub struct SettingsError {
     pub allowed: &'static str,
 }
 
+/// How unstable modes are counted where the matrix is not symmetric.
+///
+/// Symmetric matrices cost nothing extra in any storage: their inertia comes with the factors. The
+/// same holds where the symmetric part is definite. [`crate::Point::certified`] says at every point
+/// whether the number is certain.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Counting {
+    /// All eigenvalues up to 120 unknowns ([`crate::linalg::Dense`]: up to 600), some 10 ms a
+    /// point; beyond it the few nearest to zero, which give a lower bound.
+    #[default]
+    Automatic,
+    /// All eigenvalues up to 600 unknowns, whatever the storage: certain, and half a second a point
+    /// at 400 unknowns.
+    Full,
+    /// The few eigenvalues nearest to zero: never certain, cheap at every size.
+    Few,
+}
+
 /// How a branch is traced. Lengths are arclengths in the problem's metric
 /// ([`crate::Problem::metric`]); a range is that of the continued parameter: the distance from the
 /// start to the target, else the width of the domain, else the parameter's scale.
@@ -56,6 +76,8 @@ pub struct Settings {
     /// Number of eigenvalues, the most unstable ones, to compute at every point
     /// ([`crate::Point::eigenvalues`]); costs an assembly and some solves each.
     pub eigenvalues: usize,
+    /// How unstable modes are counted where the matrix is not symmetric.
+    pub counting: Counting,
     /// Folds, zeros and extrema are located to this distance along the branch, in the scaled
     /// metric. Branch points and Hopf points are met by Newton's method, to rounding.
     pub event_tolerance: f64,
@@ -75,6 +97,7 @@ impl Default for Settings {
             max_iterations: 8,
             max_angle: 0.35,
             eigenvalues: 0,
+            counting: Counting::Automatic,
             event_tolerance: 1e-12,
         }
     }

@@ -1,6 +1,5 @@
 //! Whole diagrams, of every kind of problem.
 
-use super::form::certified;
 use super::stability::Stability;
 use super::{RunError, contact, general, ring_load, states};
 use crate::case::{ProblemCase, ResolvedCase};
@@ -342,7 +341,7 @@ fn ending(diagram: &Diagram) -> (&'static str, String) {
                 (1, _) => "one branch ended early; see its own".to_owned(),
                 _ => format!("{count} branches ended early; see theirs"),
             };
-            let doubtful = |one: &&DiagramBranch| certified(&one.branch) == Some(false);
+            let doubtful = |one: &&DiagramBranch| !one.branch.is_certain();
             let doubtful = diagram.branches.iter().filter(doubtful).count();
             let doubt = match doubtful {
                 0 => String::new(),

@@ -105,6 +105,17 @@ pub struct Statistics {
     pub rejected: usize,
 }
 
+/// A piece of a branch in which something may have been missed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Doubt {
+    /// The continued parameter where the piece begins, along the branch.
+    pub from: f64,
+    /// The continued parameter where it ends.
+    pub to: f64,
+    /// What is not known there, for people.
+    pub reason: String,
+}
+
 /// A traced branch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Branch {
@@ -118,6 +129,10 @@ pub struct Branch {
     pub points: Vec<Point>,
     /// Special points in order along the branch.
     pub events: Vec<Event>,
+    /// Where special points may be missing; empty where every change of the count of unstable modes
+    /// has a special point that explains it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub doubts: Vec<Doubt>,
     /// Why the branch ended.
     pub stopped: Stop,
     /// Why it ends at its first point, where that is an end and not a start
@@ -133,6 +148,13 @@ impl Branch {
     pub fn is_complete(&self) -> bool {
         let ends = self.began.iter().chain([&self.stopped]);
         ends.into_iter().all(|stop| stop.reason.is_complete())
+    }
+
+    /// Whether the number of unstable modes is certain at every point that has one, and every change
+    /// of it has a special point that explains it.
+    pub fn is_certain(&self) -> bool {
+        let uncertain = |point: &Point| point.unstable.is_some() && !point.certified;
+        self.doubts.is_empty() && !self.points.iter().any(uncertain)
     }
 
     /// The special points of one kind, in order along the branch.

@@ -339,6 +339,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
                     observables: from.observables.clone(),
                     points: vec![point],
                     events: Vec::new(),
+                    doubts: Vec::new(),
                     stopped: Stop { reason: StopReason::StepTooSmall, detail },
                     began: None,
                     statistics: Statistics::default(),

@@ -150,10 +150,11 @@ pub struct Diagram {
 }
 
 impl Diagram {
-    /// Whether everything asked for was followed, and every branch to its end.
+    /// Whether everything asked for was followed, every branch to its end, and no special point may
+    /// have been missed for want of a certain count ([`Branch::is_certain`]).
     pub fn is_complete(&self) -> bool {
         self.stopped == DiagramStop::Complete
-            && self.branches.iter().all(|one| one.branch.is_complete())
+            && self.branches.iter().all(|one| one.branch.is_complete() && one.branch.is_certain())
     }
 
     /// What all branches together cost.

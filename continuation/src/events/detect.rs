@@ -78,6 +78,10 @@ pub(crate) struct Detector {
     extended: Option<Beside>,
     // whether stability is read from another matrix than the Jacobian
     separate: bool,
+    // how often shorter steps did not explain a change of an uncertain count
+    futile: usize,
+    // what the latest step leaves open
+    doubt: Option<&'static str>,
 }
 
 /// Which eigenvalues beside the critical ones make an event when they cross the imaginary axis.
@@ -98,6 +102,9 @@ const VERTICAL: f64 = 1e-9;
 const MAX_MISMATCH: f64 = 0.35;
 /// Changes smaller than this fraction of an observable's magnitude are not looked into.
 const NEGLIGIBLE: f64 = 1e-7;
+/// Changes of uncertain counts that are followed up in vain before they are only noted: each costs a
+/// score of short steps.
+const MOST_FUTILE: usize = 4;
 /// Rounding level of an observable relative to its magnitude.
 const NOISE: f64 = 1e-12;
 
@@ -139,7 +146,15 @@ impl Detector {
         }
         let found = Vec::with_capacity(watched.len() + 2);
         let magnitude = vec![0.0; observables.len()];
-        Ok(Detector { watched, magnitude, found, extended, separate: false })
+        Ok(Detector {
+            watched,
+            magnitude,
+            found,
+            extended,
+            separate: false,
+            futile: 0,
+            doubt: None,
+        })
     }
 
     /// Says whether stability is read from another matrix than the Jacobian.
@@ -190,6 +205,7 @@ impl Detector {
         final_say: bool,
     ) -> Result<(), Refusal> {
         self.found.clear();
+        self.doubt = None;
         let p = Cubic { h, g: [a.p, b.p], s: [a.tp, b.tp] };
         // where the parameter stands still to rounding, its turns are noise
         let vertical = a.tp.abs().max(b.tp.abs()) < VERTICAL * range;
@@ -278,18 +294,18 @@ impl Detector {
             // the special point at the start is not in the step; a step must not end on one
             return if a.critical || final_say { Ok(()) } else { Err(Refusal::OnSpecialPoint) };
         }
-        let change = match (a.count, b.count) {
-            (Some(before), Some(after)) => before.abs_diff(after),
-            _ => usize::from(fold != flip),
-        };
+        if !(a.certified && b.certified) {
+            return self.detect_uncertain(a, b, fold, flip, final_say);
+        }
+        let (Some(before), Some(after)) = (a.count, b.count) else { return Ok(()) };
+        let change = before.abs_diff(after);
         // a pair that meets on the real axis on the way may have crossed the imaginary one
         // first, hidden by a fold
         if change > 0 && a.pairs != b.pairs && !final_say {
             return Err(Refusal::Stability);
         }
-        let certain = a.certified && b.certified;
         let pairs = a.unstable_pairs.abs_diff(b.unstable_pairs);
-        let hopf = if certain && a.pairs == b.pairs {
+        let hopf = if a.pairs == b.pairs {
             // a pair that crosses beside a fold or a branch point, or beside another pair
             let alone = pairs == 1 && change == 2 && !fold && !flip;
             if pairs > 0 && !alone && !final_say {
@@ -297,7 +313,6 @@ impl Detector {
             }
             pairs > 0
         } else {
-            // a few eigenvalues found by iteration tell pairs that cross, no more
             change == 2 && !fold && !flip && crosses(a.pair, b.pair)
         };
         if hopf {
@@ -308,20 +323,59 @@ impl Detector {
             return Ok(());
         }
         let kernel = match (flip, fold) {
-            (true, true) if certain && change > 0 && !final_say => return Err(Refusal::Stability),
+            (true, true) if change > 0 && !final_say => return Err(Refusal::Stability),
             (true, true) => 1,
-            (true, false) if certain => change.max(1),
-            (true, false) => 1,
-            (false, true) if certain && change != 1 && !final_say => {
-                return Err(Refusal::Stability);
-            }
-            (false, false) if certain && change == 1 && !final_say => {
-                return Err(Refusal::Stability);
-            }
-            (false, false) if certain => change,
-            (false, false) if change == 2 && pairs == 0 => 2,
-            _ => 0,
+            (true, false) => change.max(1),
+            (false, true) if change != 1 && !final_say => return Err(Refusal::Stability),
+            (false, true) => 0,
+            (false, false) if change == 1 && !final_say => return Err(Refusal::Stability),
+            (false, false) => change,
         };
+        if kernel > 0 {
+            self.found.push(Candidate::BranchPoint { kernel });
+        }
+        Ok(())
+    }
+
+    /// The same where the counts are lower bounds. The orientation is exact: it tells whether the
+    /// number of real eigenvalues that pass zero, besides the one of a fold, is odd. Every other
+    /// change of the counts is followed up by shorter steps, and doubted where these do not explain
+    /// it.
+    fn detect_uncertain(
+        &mut self,
+        a: &State,
+        b: &State,
+        fold: bool,
+        flip: bool,
+        final_say: bool,
+    ) -> Result<(), Refusal> {
+        let change = match (a.count, b.count) {
+            (Some(before), Some(after)) => before.abs_diff(after),
+            _ => usize::from(fold != flip),
+        };
+        let hopf = change == 2 && !fold && !flip && crosses(a.pair, b.pair);
+        if hopf {
+            self.found.push(Candidate::Hopf);
+            return Ok(());
+        }
+        // (found by the orientation, explained by it)
+        let (kernel, explained) = match (flip, fold) {
+            // a pitchfork met from its side: its eigenvalue comes back
+            (true, true) => (1, 0),
+            (true, false) => (1, 1),
+            (false, true) => (0, 1),
+            // two together, or a pair whose eigenvalues are not among the few
+            (false, false) if change == 2 => (2, 2),
+            (false, false) => (0, 0),
+        };
+        // an eigenvalue that has left the few makes one less without passing zero
+        let excess = change.saturating_sub(explained);
+        if excess > 1 || (excess == 1 && kernel == 0 && !fold) {
+            if !final_say && self.futile < MOST_FUTILE {
+                return Err(Refusal::Stability);
+            }
+            self.doubt_count();
+        }
         if kernel > 0 {
             self.found.push(Candidate::BranchPoint { kernel });
         }
@@ -383,6 +437,35 @@ impl Detector {
             Candidate::Parameter { value, .. } => crosses(a - value, fold - value),
             _ => false,
         })
+    }
+
+    /// Notes that an uncertain count changes in the step and nothing explains it.
+    pub(crate) fn doubt_count(&mut self) {
+        self.futile += 1;
+        self.doubt = Some(
+            "the number of unstable modes, which is a lower bound here, changes without a special \
+             point that explains it",
+        );
+    }
+
+    /// What the step may hide, if the latest [`Detector::detect`] could not tell.
+    pub(crate) fn doubt(&self) -> Option<&'static str> {
+        self.doubt
+    }
+
+    /// The first value of the parameter between `a` and `b` at which the trace ends.
+    pub(crate) fn end_between(&self, a: f64, b: f64) -> Option<Candidate> {
+        let ends = self.watched.iter().filter(|candidate| match candidate {
+            Candidate::Parameter { value, role } => {
+                *role != Role::Landing && crosses(a - value, b - value) && b != *value
+            }
+            _ => false,
+        });
+        let distance = |candidate: &Candidate| match candidate {
+            Candidate::Parameter { value, .. } => (value - a).abs(),
+            _ => f64::INFINITY,
+        };
+        ends.min_by(|x, y| distance(x).total_cmp(&distance(y))).copied()
     }
 
     /// What the latest [`Detector::detect`] found.

@@ -1,7 +1,10 @@
 //! General band matrix, LU with partial pivoting.
 
 use super::vector::{add_scaled, dot, max_abs, pivot_or_floor, sign, solve_refined};
-use super::{Facts, Matrix};
+use super::{Facts, Matrix, SymmetricBand, SymmetricPart};
+
+/// Difference of mirrored entries, relative to the largest one, that is rounding of their assembly.
+const SYMMETRIC: f64 = 4.0 * f64::EPSILON;
 
 /// A band matrix with `kl` diagonals below and `ku` above the main one.
 ///
@@ -22,6 +25,8 @@ pub struct Band {
     residual: Vec<f64>,
     norm: f64,
     refine: bool,
+    /// The symmetric part, if it was asked for.
+    symmetric: Option<Box<SymmetricBand>>,
 }
 
 impl Band {
@@ -39,6 +44,7 @@ impl Band {
             residual: vec![0.0; n],
             norm: 0.0,
             refine: false,
+            symmetric: None,
         }
     }
 
@@ -263,6 +269,25 @@ impl Matrix for Band {
             self.add(i, i, a);
         }
         true
+    }
+
+    /// By `L D Lᵀ` of the band; half as dear as the factorisation, storage allocated once.
+    fn symmetric_part(&mut self) -> Option<SymmetricPart> {
+        let (n, kd) = (self.n, self.kl.max(self.ku));
+        let mut part = self.symmetric.take().unwrap_or_else(|| Box::new(SymmetricBand::new(n, kd)));
+        let mut apart = 0.0_f64;
+        for j in 0..n {
+            for (k, entry) in part.column_mut(j).iter_mut().enumerate() {
+                let (below, above) = (self.get(j + k, j), self.get(j, j + k));
+                *entry = 0.5 * (below + above);
+                apart = apart.max((below - above).abs());
+            }
+        }
+        let norm = part.norm();
+        let facts = part.factor(f64::EPSILON * norm);
+        self.symmetric = Some(part);
+        let (negative, positive) = facts.inertia.filter(|_| facts.perturbed == 0)?;
+        Some(SymmetricPart { negative, positive, whole: apart <= SYMMETRIC * norm })
     }
 
     fn complex(&self, imaginary: &Self) -> Option<Self> {

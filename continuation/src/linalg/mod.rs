@@ -70,6 +70,22 @@ pub struct Facts {
     pub perturbed: usize,
 }
 
+/// The symmetric part of a matrix: how many of its eigenvalues have which sign.
+///
+/// Of a symmetric matrix that is the inertia. Of another one it decides two cases: where no
+/// eigenvalue of the symmetric part is positive, none of the matrix has a positive real part, and
+/// the other way round (Bendixson 1902). In between it bounds nothing: `[[1, 9], [0, 1]]` has two
+/// eigenvalues on the right, its symmetric part has one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SymmetricPart {
+    /// Number of negative eigenvalues.
+    pub negative: usize,
+    /// Number of positive eigenvalues.
+    pub positive: usize,
+    /// Whether the matrix is symmetric, to rounding.
+    pub whole: bool,
+}
+
 /// A square matrix that can be factored and solved with; entries survive [`Matrix::factor`].
 ///
 /// All vectors have length [`Matrix::dim`]. Nothing fails: a singular matrix is factored with its
@@ -103,6 +119,12 @@ pub trait Matrix: Clone + Send {
     /// otherwise. Infinite eigenvalues (of a singular `M`) are left out.
     fn spectrum(&self, mass: Option<&Self>) -> Option<Vec<(f64, f64)>> {
         let _ = mass;
+        None
+    }
+    /// Numbers of negative and positive eigenvalues of the symmetric part `(A + Aᵀ)/2` of a matrix
+    /// that is stored without symmetry, where they are cheap and certain; `None` (the default)
+    /// otherwise. The factors stay those of [`Matrix::factor`], which came before.
+    fn symmetric_part(&mut self) -> Option<SymmetricPart> {
         None
     }
     /// The real form of the complex matrix `A + i B`, of twice the dimension: entry `(j, k)`

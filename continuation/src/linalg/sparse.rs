@@ -8,10 +8,12 @@ use faer::sparse::linalg::{amd, colamd};
 
 use super::sparse_lu::{Columns, SparseLu};
 use super::vector::{add_scaled, max_abs, solve_refined};
-use super::{Facts, Matrix};
+use super::{Facts, MAX_GROWTH, Matrix, SymmetricPart};
 
 /// Part of the entries with a mirror image above which a pattern counts as symmetric.
 const SYMMETRIC: f64 = 0.9;
+/// Difference of mirrored entries, relative to the largest one, that is rounding of their assembly.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A sparse matrix with a fixed pattern, which always contains the diagonal.
 ///
@@ -37,6 +39,7 @@ pub struct Sparse {
     scratch: Vec<f64>,
     norm: f64,
     refine: bool,
+    growth: f64,
 }
 
 #[derive(Debug, PartialEq)]
@@ -94,6 +97,7 @@ impl Sparse {
             scratch: vec![0.0; n],
             norm: 0.0,
             refine: false,
+            growth: f64::INFINITY,
         })
     }
 
@@ -107,6 +111,16 @@ impl Sparse {
         let first = self.pattern.start[j];
         let column = &self.pattern.rows[first..self.pattern.start[j + 1]];
         column.binary_search(&i).ok().map(|at| first + at)
+    }
+
+    fn is_symmetric(&self) -> bool {
+        let rounding = ROUNDING * self.norm;
+        (0..self.pattern.n).all(|j| {
+            let (rows, values) = self.column(j);
+            let below = rows.iter().zip(values);
+            // an entry without a mirror image must be rounding itself
+            below.clone().all(|(i, value)| (value - self.get(j, *i)).abs() <= rounding)
+        })
     }
 
     fn found(&self, row: usize, column: usize) -> Result<usize, OutsidePattern> {
@@ -273,10 +287,11 @@ impl Matrix for Sparse {
             Columns { start: &self.pattern.start, rows: &self.pattern.rows, values: &self.values };
         let found = self.lu.factor(columns, &self.row_scale, floor.max(f64::MIN_POSITIVE));
         self.refine = found.perturbed == 0;
+        self.growth = if self.norm > 0.0 { found.largest / self.norm } else { 1.0 };
         Facts {
             det_sign: Some(found.det_sign),
             inertia: None,
-            growth: if self.norm > 0.0 { found.largest / self.norm } else { 1.0 },
+            growth: self.growth,
             perturbed: found.perturbed,
         }
     }
@@ -294,6 +309,16 @@ impl Matrix for Sparse {
             self.values[*at] += a;
         }
         true
+    }
+
+    /// Of symmetric matrices only, from the signs of the pivots where all of them lie on the
+    /// diagonal: `P A Pᵀ = L D Lᵀ` then.
+    fn symmetric_part(&mut self) -> Option<SymmetricPart> {
+        if !(self.refine && self.growth <= MAX_GROWTH && self.is_symmetric()) {
+            return None;
+        }
+        let negative = self.lu.negative_pivots()?;
+        Some(SymmetricPart { negative, positive: self.pattern.n - negative, whole: true })
     }
 
     fn complex(&self, imaginary: &Self) -> Option<Self> {

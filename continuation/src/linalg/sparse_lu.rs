@@ -312,6 +312,12 @@ impl SparseLu {
         }
     }
 
+    /// Number of negative pivots, where all lie on the diagonal.
+    pub(super) fn negative_pivots(&self) -> Option<usize> {
+        let diagonal = self.pivot_row == self.order;
+        diagonal.then(|| self.pivots.iter().filter(|pivot| **pivot < 0.0).count())
+    }
+
     /// Number of entries of both factors.
     pub(super) fn entries(&self) -> usize {
         self.lower.rows.len() + self.upper.rows.len() + self.n

@@ -98,7 +98,7 @@ impl<'a, P: Problem> Core<'a, P> {
             jacobian: problem.new_jacobian(),
             bordered: Bordered::new(n, 1),
             facts: None,
-            stability: StabilityCount::new(problem, settings.eigenvalues),
+            stability: StabilityCount::new(problem, settings.eigenvalues, settings.counting),
             r: vec![0.0; n],
             du: vec![0.0; n],
             mdu: vec![0.0; n],

@@ -1,15 +1,19 @@
 //! How many modes are unstable, and how surely that is known.
 //!
-//! From the inertia where the factors report it (symmetric matrices), else from the full spectrum
-//! of a dense matrix: both are certain. Else from a few eigenvalues by iteration, which is not.
+//! From the inertia where the factors report it (symmetric matrices, in any storage), from a
+//! symmetric part that is definite, or from the full spectrum where that is affordable: all three
+//! are certain. Else from a few eigenvalues by iteration, which is a lower bound and no more.
 
 use super::State;
 use crate::linalg::Matrix;
 use crate::modes::ModeSolver;
 use crate::problem::{ParamId, Problem, Stability};
+use crate::settings::Counting;
 
 /// Eigenvalues computed at every point where nothing else tells the stability.
 const FEW: usize = 10;
+/// Most of them: beyond it the number of unstable ones is a lower bound, and the work stays bounded.
+const MOST: usize = 24;
 
 /// Counts unstable modes of one problem.
 pub(crate) struct StabilityCount<P: Problem> {
@@ -25,12 +29,12 @@ pub(crate) struct StabilityCount<P: Problem> {
 }
 
 impl<P: Problem> StabilityCount<P> {
-    pub(crate) fn new(problem: &P, wanted: usize) -> Self {
+    pub(crate) fn new(problem: &P, wanted: usize, counting: Counting) -> Self {
         StabilityCount {
             sense: problem.stability(),
             multipliers: problem.multipliers(),
             wanted,
-            solver: ModeSolver::new(problem, wanted),
+            solver: ModeSolver::new(problem, wanted).counting(counting),
             hessian: (problem.stability() == Stability::SeparateHessian)
                 .then(|| problem.new_jacobian()),
             last: 0,
@@ -97,6 +101,13 @@ impl<P: Problem> StabilityCount<P> {
             x.count = Some(if energy { negative } else { positive });
             x.certified = true;
             self.solver.solve(problem, jacobian, inertia, &mut x.eigenvalues);
+        } else if let Some(count) = self.by_symmetric_part(jacobian, energy) {
+            x.count = Some(count);
+            x.certified = true;
+            if self.wanted > 0 {
+                let few = self.solver.few(problem, jacobian, self.wanted);
+                self.solver.pick(few, &mut x.eigenvalues);
+            }
         } else if let Some(spectrum) = self.solver.spectrum(jacobian) {
             self.read(&spectrum, energy, x);
             x.certified = true;
@@ -104,7 +115,7 @@ impl<P: Problem> StabilityCount<P> {
             self.solver.pick(reported, &mut x.eigenvalues);
         } else if self.sense != Stability::None {
             // more than twice as many as were unstable last, so that the unstable ones are among them
-            let count = FEW.max(self.wanted).max(2 * self.last + FEW / 2);
+            let count = FEW.max(2 * self.last + FEW / 2).min(MOST).max(self.wanted);
             let few = self.solver.few(problem, jacobian, count);
             self.read(&few, energy, x);
             self.last = x.count.unwrap_or(0);
@@ -114,6 +125,16 @@ impl<P: Problem> StabilityCount<P> {
             let multipliers = if energy { self.multipliers } else { 0 };
             x.unstable = x.count.map(|count| count.saturating_sub(multipliers));
         }
+    }
+
+    /// The number of eigenvalues on the unstable side, where the symmetric part decides it.
+    fn by_symmetric_part(&mut self, jacobian: &mut P::Jacobian, energy: bool) -> Option<usize> {
+        if self.sense == Stability::None || !self.solver.mass_is_definite() {
+            return None;
+        }
+        let part = jacobian.symmetric_part()?;
+        let decided = part.whole || part.negative == 0 || part.positive == 0;
+        decided.then_some(if energy { part.negative } else { part.positive })
     }
 
     /// Counts in a spectrum, or in a part of it.

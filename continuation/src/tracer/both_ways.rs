@@ -95,6 +95,7 @@ fn join(mut back: Branch, ahead: Branch) -> Branch {
         event.point += points - 1;
         event
     }));
+    back.doubts.extend(ahead.doubts);
     let (total, more) = (&mut back.statistics, ahead.statistics);
     total.newton_iterations += more.newton_iterations;
     total.accepted += more.accepted;
@@ -112,6 +113,10 @@ fn reverse(branch: &mut Branch) {
         point.s = length - point.s;
         point.dp_ds = -point.dp_ds;
         point.event = point.event.map(|event| events - 1 - event);
+    }
+    branch.doubts.reverse();
+    for doubt in &mut branch.doubts {
+        std::mem::swap(&mut doubt.from, &mut doubt.to);
     }
     branch.events.reverse();
     for event in &mut branch.events {

@@ -28,7 +28,7 @@ pub use both_ways::both_ways;
 pub use input::{Progress, TraceError};
 pub(crate) use snapshot::Snapshot;
 
-use crate::branch::{Branch, Event, Point, Statistics, Stop, StopReason};
+use crate::branch::{Branch, Doubt, Event, Point, Statistics, Stop, StopReason};
 use crate::events::{Beside, Detector, Watch};
 use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem, Stability};
@@ -77,6 +77,7 @@ pub struct Tracer<'a, P: Problem> {
     queue: VecDeque<Point>,
     emitted: usize,
     events: Vec<Event>,
+    doubts: Vec<Doubt>,
     stop: Option<Stop>,
 }
 
@@ -182,6 +183,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             queue: VecDeque::new(),
             emitted: 0,
             events: Vec::new(),
+            doubts: Vec::new(),
             stop: None,
             start,
         };
@@ -281,6 +283,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             observables: problem.observables().iter().map(|&s| s.to_owned()).collect(),
             points,
             events: self.events,
+            doubts: self.doubts,
             stopped,
             began: None,
             statistics: self.core.statistics,
@@ -390,11 +393,13 @@ impl<'a, P: Problem> Tracer<'a, P> {
     /// Tries a step of scaled length `h`.
     fn attempt(&mut self, h: f64, final_say: bool) -> Result<(), Refusal> {
         self.predict(h);
-        let Self { core, current, trial, settings, detector, .. } = self;
+        let Self { core, current, trial, settings, .. } = self;
         let corrected = core.correct(Constraint::Plane(current, h), trial, Precision::Step)?;
         let secant = core.secant(current, trial);
         let tangents = core.weights.dot(&current.mtu, current.tp, &trial.tu, trial.tp);
         let quality = judge(settings, trial, h, &corrected, secant, tangents)?;
+        let h = self.end_at_bound(h);
+        let Self { core, current, trial, detector, .. } = self;
         detector.detect(current, trial, h, core.weights.parameter, final_say)?;
         let s_trial = self.s + self.metric_distance();
         // before the location, whose result is left in the same work space
@@ -405,8 +410,13 @@ impl<'a, P: Problem> Tracer<'a, P> {
             special.retain(|one| one.place.at <= at + 1e-4 * h);
             reason
         });
+        let doubt = self.detector.doubt();
+        let (from, to) = (self.current.p, self.trial.p);
         let length = self.trial.length;
         self.accept(h, &special, s_trial, returned)?;
+        if let Some(reason) = doubt {
+            self.doubts.push(Doubt { from, to, reason: reason.to_owned() });
+        }
         // by scales that the step has changed
         let h = if self.expected.is_some() { h * length / self.current.length } else { h };
         let length = self.current.length;

@@ -2,7 +2,7 @@
 
 use super::Tracer;
 use super::switching::Departure;
-use crate::branch::{Event, Point, Statistics, Stop};
+use crate::branch::{Doubt, Event, Point, Statistics, Stop};
 use crate::problem::Problem;
 use crate::step::{State, StepSize, Weights};
 use serde::{Deserialize, Serialize};
@@ -34,6 +34,8 @@ pub(crate) struct Snapshot {
     queue: VecDeque<Point>,
     emitted: usize,
     events: Vec<Event>,
+    #[serde(default)]
+    doubts: Vec<Doubt>,
     stop: Option<Stop>,
 }
 
@@ -62,6 +64,7 @@ impl<P: Problem> Tracer<'_, P> {
             queue: self.queue.clone(),
             emitted: self.emitted,
             events: self.events.clone(),
+            doubts: self.doubts.clone(),
             stop: self.stop.clone(),
         }
     }
@@ -104,6 +107,7 @@ impl<P: Problem> Tracer<'_, P> {
         self.queue = from.queue;
         self.emitted = from.emitted;
         self.events = from.events;
+        self.doubts = from.doubts;
         self.stop = from.stop;
     }
 }

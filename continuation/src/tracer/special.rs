@@ -20,6 +20,25 @@ pub(super) struct Special {
 }
 
 impl<P: Problem> Tracer<'_, P> {
+    /// Ends the step of length `h` where the trace ends, if it passes its target or a bound of its
+    /// domain: what lies beyond is not judged. The step's length then.
+    pub(super) fn end_at_bound(&mut self, h: f64) -> f64 {
+        let Some(end) = self.detector.end_between(self.current.p, self.trial.p) else { return h };
+        let Self { core, current: a, trial: b, work, settings, .. } = self;
+        let at_end = locate(core, a, b, h, &end, settings.event_tolerance, work).is_ok();
+        let Candidate::Parameter { value, .. } = end else { return h };
+        if !at_end || work.p != value {
+            return h;
+        }
+        let (distance, cosine, _) = core.secant(a, work);
+        let along = distance * cosine;
+        if !(along > 0.0 && along <= h * (1.0 + 1e-9)) {
+            return h;
+        }
+        b.copy_from(work);
+        along
+    }
+
     /// Locates every candidate of the step, sorted along it; the trace's end cuts the rest off.
     pub(super) fn locate_all(&mut self, h: f64, final_say: bool) -> Result<Vec<Special>, Refusal> {
         if self.detector.found().is_empty() {
@@ -90,7 +109,9 @@ impl<P: Problem> Tracer<'_, P> {
             Ok(found) => located.extend(found.into_iter().map(special)),
             Err(refusal) if !final_say => return Err(refusal),
             // a count that is not certain may have changed without a reason
-            Err(_) if kernel > 1 && !(a.certified && b.certified) => {}
+            Err(_) if kernel > 1 && !(a.certified && b.certified) => {
+                self.detector.doubt_count();
+            }
             // steps cannot become shorter: as near as bisection comes
             Err(_) => {
                 let tolerance = settings.event_tolerance;

@@ -1,0 +1,417 @@
+//! No special point is lost because the number of unstable modes is uncertain, in any storage.
+
+#![allow(clippy::unwrap_used)]
+
+use continuation::linalg::{Band, Dense, Matrix, Sparse};
+use continuation::{
+    Branch, Detail, EvalError, EventKind, ParamId, Parameter, Problem, Settings, Stability,
+    StopReason, Tracer,
+};
+use std::marker::PhantomData;
+use std::ops::ControlFlow;
+
+/// Where entries of a Jacobian go.
+trait Entries: Matrix {
+    fn with_band(n: usize, band: usize) -> Self;
+    fn put(&mut self, i: usize, j: usize, value: f64);
+}
+
+impl Entries for Dense {
+    fn with_band(n: usize, _: usize) -> Self {
+        Dense::new(n)
+    }
+    fn put(&mut self, i: usize, j: usize, value: f64) {
+        self.add(i, j, value);
+    }
+}
+
+impl Entries for Band {
+    fn with_band(n: usize, band: usize) -> Self {
+        Band::new(n, band, band)
+    }
+    fn put(&mut self, i: usize, j: usize, value: f64) {
+        self.add(i, j, value);
+    }
+}
+
+impl Entries for Sparse {
+    fn with_band(n: usize, band: usize) -> Self {
+        let near = |i: usize| (i.saturating_sub(band)..(i + band + 1).min(n)).map(move |j| (i, j));
+        let pattern: Vec<(usize, usize)> = (0..n).flat_map(near).collect();
+        Sparse::new(n, &pattern).unwrap()
+    }
+    fn put(&mut self, i: usize, j: usize, value: f64) {
+        self.add(i, j, value).unwrap();
+    }
+}
+
+/// `u = T v`, `v_i' = (p − c_i) v_i − v_i³`: branch points of `u = 0` at the `c_i`.
+struct Modes<J> {
+    c: Vec<f64>,
+    /// Two layers of 2 × 2 blocks; `T` is their product, the identity if they are empty.
+    layers: [Vec<[f64; 4]>; 2],
+    sense: Stability,
+    matrix: PhantomData<fn() -> J>,
+}
+
+/// Reach of `T D T⁻¹`.
+const REACH: usize = 4;
+
+impl<J: Entries> Modes<J> {
+    fn new(c: &[f64], layers: [Vec<[f64; 4]>; 2]) -> Self {
+        Modes { c: c.to_vec(), layers, sense: Stability::Dynamics, matrix: PhantomData }
+    }
+
+    fn layer(&self, which: usize, inverse: bool, x: &mut [f64]) {
+        for (k, block) in self.layers[which].iter().enumerate() {
+            let i = 2 * k + which;
+            let [a, b, c, d] = if inverse {
+                let det = block[0] * block[3] - block[1] * block[2];
+                [block[3], -block[1], -block[2], block[0]].map(|x| x / det)
+            } else {
+                *block
+            };
+            (x[i], x[i + 1]) = (a * x[i] + b * x[i + 1], c * x[i] + d * x[i + 1]);
+        }
+    }
+
+    fn invert_similarity(&self, x: &mut [f64]) {
+        self.layer(0, true, x);
+        self.layer(1, true, x);
+    }
+
+    fn apply_similarity(&self, x: &mut [f64]) {
+        self.layer(1, false, x);
+        self.layer(0, false, x);
+    }
+
+    fn sign(&self) -> f64 {
+        if self.sense == Stability::EnergyHessian { -1.0 } else { 1.0 }
+    }
+}
+
+impl<J: Entries> Problem for Modes<J> {
+    type Jacobian = J;
+    fn dim(&self) -> usize {
+        self.c.len()
+    }
+    fn parameters(&self) -> &[Parameter] {
+        &[Parameter { name: "p", unit: "", scale: 1.0 }]
+    }
+    fn new_jacobian(&self) -> J {
+        J::with_band(self.dim(), if self.layers[0].is_empty() { 0 } else { REACH })
+    }
+    fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
+        let mut v = u.to_vec();
+        self.invert_similarity(&mut v);
+        for (v, c) in v.iter_mut().zip(&self.c) {
+            *v = self.sign() * ((p[0] - c) * *v - v.powi(3));
+        }
+        self.apply_similarity(&mut v);
+        r.copy_from_slice(&v);
+        Ok(())
+    }
+    fn jacobian(&self, u: &[f64], p: &[f64], j: &mut J) -> Result<(), EvalError> {
+        let n = self.dim();
+        let mut v = u.to_vec();
+        self.invert_similarity(&mut v);
+        j.set_zero();
+        let mut x = vec![0.0; n];
+        for k in 0..n {
+            x.fill(0.0);
+            x[k] = 1.0;
+            self.invert_similarity(&mut x);
+            for ((x, c), v) in x.iter_mut().zip(&self.c).zip(&v) {
+                *x *= self.sign() * (p[0] - c - 3.0 * v * v);
+            }
+            self.apply_similarity(&mut x);
+            for (i, x) in x.iter().enumerate().filter(|(_, x)| **x != 0.0) {
+                j.put(i, k, *x);
+            }
+        }
+        Ok(())
+    }
+    fn parameter_derivative(
+        &self,
+        u: &[f64],
+        _: &[f64],
+        _: ParamId,
+        out: &mut [f64],
+    ) -> Result<(), EvalError> {
+        let sign = self.sign();
+        out.iter_mut().zip(u).for_each(|(o, u)| *o = sign * u);
+        Ok(())
+    }
+    fn stability(&self) -> Stability {
+        self.sense
+    }
+}
+
+fn trace<P: Problem>(problem: &P, from: f64, to: f64) -> Branch {
+    let settings = Settings { target: Some(to), ..Settings::default() };
+    let u = vec![0.0; problem.dim()];
+    let name = problem.parameters()[0].name;
+    Tracer::new(problem, name, &u, &[from], settings)
+        .unwrap()
+        .run(&mut |_| ControlFlow::Continue(()))
+}
+
+/// Every crossing is found, none invented; counts are right or said to be uncertain, and then no
+/// larger than the right ones.
+fn check(branch: &Branch, c: &[f64], what: &str) {
+    assert_eq!(branch.stopped.reason, StopReason::Target, "{what}: {:?}", branch.stopped);
+    let mut exact: Vec<f64> = c.iter().copied().filter(|c| (0.0..1.0).contains(c)).collect();
+    exact.sort_by(f64::total_cmp);
+    let found: Vec<f64> = branch.events.iter().map(|e| e.p).collect();
+    assert_eq!(found.len(), exact.len(), "{what}: {found:?}, {exact:?}, {:?}", branch.doubts);
+    for (event, exact) in branch.events.iter().zip(&exact) {
+        assert_eq!(event.kind, EventKind::BranchPoint, "{what}");
+        assert!((event.p - exact).abs() < 1e-9, "{what}: {} for {exact}", event.p);
+        // the products of the test's own matrices are rounded
+        let rounding = 64.0 * f64::EPSILON * c.iter().fold(1.0, |m: f64, c| m.max(c.abs()));
+        let off = (event.p - exact).abs();
+        assert!(
+            off <= event.error_estimate + rounding,
+            "{what}: {off:e} {:e}",
+            event.error_estimate
+        );
+    }
+    for point in branch.points.iter().filter(|point| point.event.is_none()) {
+        let right = c.iter().filter(|c| point.p > **c).count();
+        let count = point.unstable.unwrap();
+        let holds = if point.certified { count == right } else { count <= right };
+        assert!(holds, "{what}: {count} for {right} at {}, {}", point.p, point.certified);
+    }
+}
+
+fn in_every_storage(c: &[f64], layers: &[Vec<[f64; 4]>; 2], what: &str) {
+    check(&trace(&Modes::<Band>::new(c, layers.clone()), 0.0, 1.0), c, &format!("{what}, band"));
+    check(
+        &trace(&Modes::<Sparse>::new(c, layers.clone()), 0.0, 1.0),
+        c,
+        &format!("{what}, sparse"),
+    );
+    if c.len() <= 100 {
+        let dense = Modes::<Dense>::new(c, layers.clone());
+        check(&trace(&dense, 0.0, 1.0), c, &format!("{what}, dense"));
+    }
+}
+
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// One to six crossings anywhere, some just before and after the target, the others far.
+    fn crossings(&mut self, n: usize) -> Vec<f64> {
+        let crossings = 1 + (6.0 * self.next()) as usize;
+        let mut c: Vec<f64> = (0..crossings)
+            .map(|_| match (6.0 * self.next()) as usize {
+                0 => 1.0 - 0.02 * self.next(),
+                1 => 1.0 + 0.02 * self.next(),
+                2 => 0.5 + 0.05 * self.next(),
+                _ => 0.001 + 0.998 * self.next(),
+            })
+            .collect();
+        // crossings closer than this are one to the steps that can be made
+        c.sort_by(f64::total_cmp);
+        c.dedup_by(|a, b| *a - *b < 1e-4);
+        while c.len() < n {
+            let far = 10f64.powf(4.0 * self.next());
+            c.push(if self.next() < 0.1 { -0.1 - 0.01 * far } else { 1.5 + far });
+        }
+        // in no order
+        for i in (1..n).rev() {
+            c.swap(i, (self.next() * (i + 1) as f64) as usize);
+        }
+        c
+    }
+
+    fn layers(&mut self, n: usize, rotations: bool) -> [Vec<[f64; 4]>; 2] {
+        [0, 1].map(|first| {
+            let blocks = (n - first) / 2;
+            (0..blocks)
+                .map(|_| {
+                    let (a, b) = (self.next(), self.next());
+                    if rotations {
+                        let (s, c) = (6.0 * a).sin_cos();
+                        [c, -s, s, c]
+                    } else {
+                        [1.0, a, -0.5 * b, 1.0]
+                    }
+                })
+                .collect()
+        })
+    }
+}
+
+#[test]
+fn several_crossings_in_a_step() {
+    let mut c = vec![0.501, 0.511, 0.522, 0.533];
+    c.extend((0..56).map(|i| 2.0 + 0.1 * f64::from(i)));
+    in_every_storage(&c, &[Vec::new(), Vec::new()], "four in a step");
+}
+
+#[test]
+fn crossings_beyond_the_target() {
+    let mut c = vec![0.99, 1.002, 1.004, 1.006];
+    c.extend((0..56).map(|i| 2.0 + 0.1 * f64::from(i)));
+    in_every_storage(&c, &[Vec::new(), Vec::new()], "beyond the target");
+}
+
+#[test]
+fn random_crossings() {
+    let mut random = Random(1);
+    for k in 0..60 {
+        let n = if k % 20 == 0 { 400 } else { 41 + (60.0 * random.next()) as usize };
+        let c = random.crossings(n);
+        let layers = match k % 3 {
+            0 => [Vec::new(), Vec::new()],
+            kind => random.layers(n, kind == 1),
+        };
+        in_every_storage(&c, &layers, &format!("problem {k}, {n} unknowns"));
+    }
+}
+
+#[test]
+fn many_unstable_modes_take_bounded_work() {
+    let mut random = Random(2);
+    for unstable in [30, 199] {
+        let mut c: Vec<f64> = (0..200).map(|_| 1.5 + random.next()).collect();
+        c[..unstable].iter_mut().for_each(|c| *c = -0.1 - *c);
+        c[199] = 0.5;
+        let layers = random.layers(200, false);
+        let branch = trace(&Modes::<Band>::new(&c, layers.clone()), 0.0, 1.0);
+        check(&branch, &c, "band");
+        check(&trace(&Modes::<Sparse>::new(&c, layers), 0.0, 1.0), &c, "sparse");
+        assert!(branch.statistics.newton_iterations < 300, "{:?}", branch.statistics);
+    }
+    // an energy of the wrong sign
+    let c: Vec<f64> = (0..400).map(|i| -0.1 - 0.01 * f64::from(i)).collect();
+    let layers = random.layers(400, true);
+    let mut hessian = Modes::<Sparse>::new(&c, layers);
+    hessian.sense = Stability::EnergyHessian;
+    check(&trace(&hessian, 0.0, 1.0), &c, "energy");
+}
+
+/// Kuramoto-Sivashinsky, `ν u⁗ + u″ + u u′ = 0`, on the odd half interval of length π.
+struct KuramotoSivashinsky<J> {
+    n: usize,
+    matrix: PhantomData<fn() -> J>,
+}
+
+impl<J: Entries> KuramotoSivashinsky<J> {
+    fn h(&self) -> f64 {
+        std::f64::consts::PI / (self.n + 1) as f64
+    }
+    fn mu(&self, k: usize) -> f64 {
+        4.0 / self.h().powi(2) * (0.5 * k as f64 * self.h()).sin().powi(2)
+    }
+    fn at(u: &[f64], i: isize) -> f64 {
+        let n = u.len() as isize;
+        match i {
+            i if i == -1 || i == n => 0.0,
+            i if i < -1 => -u[(-2 - i) as usize],
+            i if i > n => -u[(2 * n - i) as usize],
+            i => u[i as usize],
+        }
+    }
+}
+
+impl<J: Entries> Problem for KuramotoSivashinsky<J> {
+    type Jacobian = J;
+    fn dim(&self) -> usize {
+        self.n
+    }
+    fn parameters(&self) -> &[Parameter] {
+        &[Parameter { name: "nu", unit: "", scale: 1.0 }]
+    }
+    fn new_jacobian(&self) -> J {
+        J::with_band(self.n, 2)
+    }
+    fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
+        let (h, at) = (self.h(), |i: isize| Self::at(u, i));
+        for i in 0..self.n as isize {
+            let second = (at(i - 1) - 2.0 * at(i) + at(i + 1)) / (h * h);
+            let fourth = (at(i - 2) - 4.0 * at(i - 1) + 6.0 * at(i) - 4.0 * at(i + 1) + at(i + 2))
+                / h.powi(4);
+            let slope = (at(i + 1) - at(i - 1)) / (2.0 * h);
+            r[i as usize] = -p[0] * fourth - second - at(i) * slope;
+        }
+        Ok(())
+    }
+    fn jacobian(&self, u: &[f64], p: &[f64], j: &mut J) -> Result<(), EvalError> {
+        let (h, n) = (self.h(), self.n as isize);
+        j.set_zero();
+        for i in 0..n {
+            let mut put = |k: isize, value: f64| {
+                let (k, sign) = match k {
+                    k if k == -1 || k == n => return,
+                    k if k < 0 => (-2 - k, -1.0),
+                    k if k > n => (2 * n - k, -1.0),
+                    k => (k, 1.0),
+                };
+                j.put(i as usize, k as usize, sign * value);
+            };
+            for (d, (second, fourth)) in
+                [(0.0, 1.0), (1.0, -4.0), (-2.0, 6.0), (1.0, -4.0), (0.0, 1.0)].iter().enumerate()
+            {
+                put(i + d as isize - 2, -p[0] * fourth / h.powi(4) - second / (h * h));
+            }
+            let (here, slope) =
+                (u[i as usize], (Self::at(u, i + 1) - Self::at(u, i - 1)) / (2.0 * h));
+            put(i, -slope);
+            put(i + 1, -here / (2.0 * h));
+            put(i - 1, here / (2.0 * h));
+        }
+        Ok(())
+    }
+    fn parameter_derivative(
+        &self,
+        u: &[f64],
+        _: &[f64],
+        _: ParamId,
+        out: &mut [f64],
+    ) -> Result<(), EvalError> {
+        let (h, at) = (self.h(), |i: isize| Self::at(u, i));
+        for i in 0..self.n as isize {
+            out[i as usize] = -(at(i - 2) - 4.0 * at(i - 1) + 6.0 * at(i) - 4.0 * at(i + 1)
+                + at(i + 2))
+                / h.powi(4);
+        }
+        Ok(())
+    }
+    fn stability(&self) -> Stability {
+        Stability::Dynamics
+    }
+}
+
+fn kuramoto_sivashinsky<J: Entries>(n: usize) {
+    let problem = KuramotoSivashinsky::<J> { n, matrix: PhantomData };
+    let branch = trace(&problem, 1.2, 0.03);
+    let found: Vec<f64> = branch.events_of(&EventKind::BranchPoint).map(|e| e.p).collect();
+    assert_eq!(found.len(), 5, "{n}: {found:?}, {:?}", branch.stopped);
+    for (k, event) in branch.events_of(&EventKind::BranchPoint).enumerate() {
+        let exact = 1.0 / problem.mu(k + 1);
+        let off = (event.p - exact).abs();
+        // entries of size 1/h⁴ are rounded
+        let rounding = 64.0 * f64::EPSILON * 6.0 * event.p.powi(2) / problem.h().powi(4);
+        let known = off <= event.error_estimate + rounding;
+        assert!(off < 1e-9 && known, "{n}, {k}: {off:e}, {:e}", event.error_estimate);
+        assert!(matches!(event.detail, Detail::Crossing(_)), "{n}, {k}");
+        assert_eq!((event.unstable_before, event.unstable_after), (Some(k), Some(k + 1)), "{n}");
+    }
+}
+
+#[test]
+fn kuramoto_sivashinsky_in_every_storage() {
+    for n in [41, 100, 200, 400, 800] {
+        kuramoto_sivashinsky::<Band>(n);
+        kuramoto_sivashinsky::<Sparse>(n);
+    }
+    kuramoto_sivashinsky::<Dense>(41);
+}
