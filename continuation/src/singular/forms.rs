@@ -9,7 +9,7 @@
 //! the scales of `f`, `u` or `p`.
 
 use super::kernel::Singular;
-use super::probe::{Extended, Probe};
+use super::probe::{Extended, FIRST, Probe};
 use crate::branch::{Criticality, Crossing, Direction, Shape};
 use crate::linalg::Matrix;
 use crate::problem::{EvalError, Problem, Stability};
@@ -61,7 +61,9 @@ pub(super) fn simple<P: Problem>(
     };
     let (traced, leaving) = (vector(own), vector(other));
     let range = probe.weights.parameter;
-    let vertical = |v: &Extended| v.p.abs() < VERTICAL * range;
+    // differences over the first step magnify the rounding of the Jacobian
+    let level = (at.resolution / FIRST).max(VERTICAL);
+    let vertical = |v: &Extended| v.p.abs() < level * range;
     let mut crossing = Crossing {
         shape: Shape::Transcritical,
         criticality: None,

@@ -25,6 +25,10 @@ const CONVERGED: f64 = 1e-12;
 /// Corrections that no longer shrink are rounding if they are below this.
 const ROUNDING: f64 = 1e-8;
 
+/// Relative rounding of the entries of a Jacobian, each a sum of a few terms, in the stored matrix
+/// whose singular point is found in place of the exact one.
+const ENTRIES: f64 = 2.0 * f64::EPSILON;
+
 /// Corrections longer than this, in natural amplitudes, lead astray.
 const LONGEST: f64 = 10.0;
 /// Points nearer to each other than this, in natural amplitudes, are one with a larger kernel.
@@ -63,6 +67,9 @@ pub(crate) struct Singular {
     pub(crate) amplitude: Vec<f64>,
     /// The last correction, in natural amplitudes.
     pub(crate) correction: f64,
+    /// By how much the rounding of the Jacobian's entries may move the point, in natural
+    /// amplitudes: that of a differential operator on a fine mesh outweighs everything else.
+    pub(crate) resolution: f64,
     /// Length of the residual that remains: by how much an imperfect branch point is unfolded.
     pub(crate) unfolding: f64,
     /// Size of the gap, in natural amplitudes, that this makes between the branches.
@@ -209,13 +216,15 @@ pub(crate) fn find<P: Problem>(
             step.add(*y, v);
             correction = correction.max(y.abs() / x);
         }
-        let grows = iteration > 3 && correction > 10.0 * last.max(CONVERGED);
+        let resolution = local.resolution(&amplitude);
+        let grows = iteration > 3 && correction > 10.0 * last.max(CONVERGED).max(resolution);
         if correction.is_nan() || correction > LONGEST || grows {
             return Err(Failure::NoConvergence);
         }
         let size = 1.0 + probe.norm(&z) / widest;
         let converged = correction <= CONVERGED * size;
-        let stagnant = correction <= ROUNDING * size && correction > 0.25 * last;
+        let rounding = (ROUNDING * size).max(resolution);
+        let stagnant = correction <= rounding && correction > 0.25 * last;
         z.add(1.0, &step);
         if converged || stagnant {
             return finish(probe, frame, z, amplitude, tangent, correction, &beta);
@@ -253,13 +262,17 @@ fn finish<P: Problem>(
             }
         }
     }
-    if curved > 0.0 && defect > COINCIDENT * curved {
+    // nor is a defect within rounding one
+    if curved > 0.0 && defect > (COINCIDENT * curved).max(2.0 * local.noise) {
         return Err(Failure::Apart(local.apart(&z)));
     }
     let unfolding = super::max_abs(beta);
     let gap = if curved > 0.0 { (unfolding / curved).sqrt() } else { 0.0 };
+    // less than the iteration tells from zero: what corrections leave of a trivial branch
+    let gap = if gap > CONVERGED { gap } else { 0.0 };
+    let resolution = local.resolution(&amplitude);
     let Local { right, left, form, .. } = local;
-    Ok(Singular { z, right, left, form, amplitude, correction, unfolding, gap, frame })
+    Ok(Singular { z, right, left, form, amplitude, correction, resolution, unfolding, gap, frame })
 }
 
 /// Vectors, defect and quadratic form at an assembled and factored point.
@@ -268,6 +281,8 @@ struct Local {
     left: Vec<Vec<f64>>,
     g: Vec<Vec<f64>>,
     form: Vec<Vec<Vec<f64>>>,
+    /// Rounding of `g`, each column times its natural amplitude.
+    noise: f64,
 }
 
 impl Local {
@@ -311,7 +326,30 @@ impl Local {
                 }
             }
         }
-        Ok(Local { right, left, g, form })
+        let norm = |x: &[f64]| crate::step::dot(x, x).sqrt();
+        let widest = right.iter().zip(&*amplitude).map(|(v, x)| norm(&v.u) * x);
+        let widest = widest.fold(0.0, f64::max);
+        let longest = left.iter().map(|w| norm(w)).fold(0.0, f64::max);
+        let noise = ENTRIES * probe.jacobian.norm() * longest * widest;
+        Ok(Local { right, left, g, form, noise })
+    }
+
+    /// By how much `noise` moves the point, in natural amplitudes. The place of a simple point
+    /// along the branch follows from what the branch does to the critical mode, that of a multiple
+    /// one from the largest of the terms.
+    fn resolution(&self, amplitude: &[f64]) -> f64 {
+        let size = |f: &Vec<Vec<f64>>| {
+            let rows = f.iter().zip(amplitude);
+            let terms =
+                rows.flat_map(|(row, x)| row.iter().zip(amplitude).map(move |(t, y)| t * x * y));
+            terms.fold(0.0, |m: f64, t| m.max(t.abs()))
+        };
+        let mut slope = self.form.iter().map(size).fold(0.0, f64::max);
+        if let [form] = &self.form[..] {
+            let along = (form[0][1] * amplitude[1]).abs();
+            slope = if along > 0.0 { along } else { slope };
+        }
+        if slope > 0.0 { self.noise / slope } else { 0.0 }
     }
 
     /// The derivative of the defect, row by row.

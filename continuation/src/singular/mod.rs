@@ -183,7 +183,7 @@ fn attempt<P: Problem>(
     }
     core.place(x, &found.z, &analysed.traced).map_err(Failure::Evaluation)?;
     x.certified = a.certified && b.certified;
-    let error = found.correction.max(gap).max(f64::EPSILON);
+    let error = found.correction.max(gap).max(found.resolution).max(f64::EPSILON);
     Ok(Crossed { at, error, crossing: analysed.crossing, state: x.clone() })
 }
 

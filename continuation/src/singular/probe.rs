@@ -41,7 +41,7 @@ impl Extended {
 }
 
 /// Step of first differences, in natural amplitudes.
-const FIRST: f64 = 1e-3;
+pub(super) const FIRST: f64 = 1e-3;
 /// Step of second differences.
 const SECOND: f64 = 1e-2;
 
