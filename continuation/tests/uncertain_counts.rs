@@ -398,10 +398,10 @@ fn kuramoto_sivashinsky<J: Entries>(n: usize) {
     for (k, event) in branch.events_of(&EventKind::BranchPoint).enumerate() {
         let exact = 1.0 / problem.mu(k + 1);
         let off = (event.p - exact).abs();
-        // entries of size 1/h⁴ are rounded
-        let rounding = 64.0 * f64::EPSILON * 6.0 * event.p.powi(2) / problem.h().powi(4);
-        let known = off <= event.error_estimate + rounding;
-        assert!(off < 1e-9 && known, "{n}, {k}: {off:e}, {:e}", event.error_estimate);
+        // entries of size 1/h⁴ are rounded, the same in every row: no method finds the exact place
+        // from them, but the estimate must know
+        assert!(off <= event.error_estimate, "{n}, {k}: {off:e}, {:e}", event.error_estimate);
+        assert!(n > 100 || off < 1e-9, "{n}, {k}: {off:e}");
         assert!(matches!(event.detail, Detail::Crossing(_)), "{n}, {k}");
         assert_eq!((event.unstable_before, event.unstable_after), (Some(k), Some(k + 1)), "{n}");
     }
