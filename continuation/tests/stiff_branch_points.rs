@@ -1,7 +1,7 @@
 //! Branch points of stiff operators: met as far as the rounding of the Jacobian's entries allows,
 //! with an estimate that says so, and a normal form.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use continuation::linalg::{Band, Dense, Matrix, Sparse};
 use continuation::{
