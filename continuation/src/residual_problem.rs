@@ -65,7 +65,7 @@ pub type DenseProblem<F> = ResidualProblem<Dense, F>;
 ///         r[i] = (left - 2.0 * u[i] + right) / h2 + p[0] * u[i].exp();
 ///     }
 /// });
-/// let settings = Settings { max_points: 30, ..Settings::default() };
+/// let settings = Settings { domain: Some((0.0, 4.0)), max_points: 100, ..Settings::default() };
 /// let branch = Tracer::new(&bratu, "p", &vec![0.0; n], &[0.0], settings)?
 ///     .run(&mut |_| ControlFlow::Continue(()));
 /// let fold = branch.events_of(&EventKind::Fold).next().expect("one fold");

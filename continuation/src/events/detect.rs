@@ -96,8 +96,9 @@ fn crosses(a: f64, b: f64) -> bool {
     a * b < 0.0 || (b == 0.0 && a != 0.0)
 }
 
-/// A parameter's part of the tangent, relative to its range, below which the branch is vertical.
-const VERTICAL: f64 = 1e-9;
+/// A parameter's part of the tangent, relative to its range, below which the branch is vertical. The
+/// tangent comes from the last iterate, whose parameter is right to 1e-9 of the range or so.
+const VERTICAL: f64 = 1e-8;
 /// Mismatch of a Hermite cubic above which the function is not resolved.
 const MAX_MISMATCH: f64 = 0.35;
 /// Changes smaller than this fraction of an observable's magnitude are not looked into.
@@ -294,10 +295,11 @@ impl Detector {
             // the special point at the start is not in the step; a step must not end on one
             return if a.critical || final_say { Ok(()) } else { Err(Refusal::OnSpecialPoint) };
         }
-        if !(a.certified && b.certified) {
+        let counts = a.count.zip(b.count).filter(|_| a.certified && b.certified);
+        let Some((before, after)) = counts else {
+            // nor is a count that is none at all: the orientation remains
             return self.detect_uncertain(a, b, fold, flip, final_say);
-        }
-        let (Some(before), Some(after)) = (a.count, b.count) else { return Ok(()) };
+        };
         let change = before.abs_diff(after);
         // a pair that meets on the real axis on the way may have crossed the imaginary one
         // first, hidden by a fold

@@ -398,7 +398,9 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let secant = core.secant(current, trial);
         let tangents = core.weights.dot(&current.mtu, current.tp, &trial.tu, trial.tp);
         let quality = judge(settings, trial, h, &corrected, secant, tangents)?;
-        let h = self.end_at_bound(h);
+        // counts that are lower bounds are followed up step by step: not beyond the end
+        let certain = self.current.certified && self.trial.certified;
+        let h = if certain { h } else { self.end_at_bound(h) };
         let Self { core, current, trial, detector, .. } = self;
         detector.detect(current, trial, h, core.weights.parameter, final_say)?;
         let s_trial = self.s + self.metric_distance();

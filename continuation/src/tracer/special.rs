@@ -68,7 +68,11 @@ impl<P: Problem> Tracer<'_, P> {
             if done {
                 continue;
             }
-            match candidate {
+            match *candidate {
+                // tests of a curve of special points are continuous and know their noise
+                Candidate::Value { observable, .. } if self.is_test(observable) => {
+                    located.push(self.locate_one(h, candidate)?);
+                }
                 Candidate::Value { .. } | Candidate::Extremum { .. } => {
                     located.extend(self.locate_watched(h, candidate)?);
                 }
@@ -171,6 +175,12 @@ impl<P: Problem> Tracer<'_, P> {
         };
         let eigenvectors = vector.into_iter().collect();
         Ok(Special { candidate: *candidate, place, detail, eigenvectors, state: work.clone() })
+    }
+
+    /// Whether zeros of the observable are special points of a curve.
+    fn is_test(&self, observable: usize) -> bool {
+        let curve = self.core.problem.special_points();
+        curve.is_some_and(|curve| curve.zero(observable).is_some())
     }
 
     /// Locates a zero or extremum of an observable, unless it has a pole or a jump there.
