@@ -166,10 +166,14 @@ fn check(branch: &Branch, c: &[f64], what: &str) {
     assert_eq!(found.len(), exact.len(), "{what}: {found:?}, {exact:?}, {:?}", branch.doubts);
     for (event, exact) in branch.events.iter().zip(&exact) {
         assert_eq!(event.kind, EventKind::BranchPoint, "{what}");
-        let off = (event.p - exact).abs();
-        assert!(off < 1e-9, "{what}: {} for {exact}, {event:?} {:?}", event.p, branch.doubts);
         // the products of the test's own matrices are rounded
-        let rounding = 64.0 * f64::EPSILON * c.iter().fold(1.0, |m: f64, c| m.max(c.abs()));
+        let largest = c.iter().fold(1.0, |m: f64, c| m.max(c.abs()));
+        let rounding = 64.0 * f64::EPSILON * largest;
+        // and an eigenvalue is known from them as well as the similarity, two layers of blocks of
+        // condition 4 at most, allows
+        let resolved = f64::max(1e-9, 4.0 * 16.0_f64.powi(2) * f64::EPSILON * largest);
+        let off = (event.p - exact).abs();
+        assert!(off < resolved, "{what}: {} for {exact}, {:?}", event.p, branch.doubts);
         assert!(
             off <= event.error_estimate + rounding,
             "{what}: {off:e} {:e}",
