@@ -354,9 +354,12 @@ impl<'a, P: Problem> Core<'a, P> {
                 return Weights { unknowns, parameter };
             }
             if let Some(fallback) = curve.fallback_scale() {
-                let reach = self.reach(x, parameter);
-                let moves = reach.is_finite() && reach > 1e-8 * fallback;
-                return Weights { unknowns: if moves { reach } else { fallback }, parameter };
+                // a curve whose unknowns move is measured by the range that is asked for
+                let reach = self.reach(x, range);
+                if reach.is_finite() && reach > 1e-8 * fallback {
+                    return Weights { unknowns: reach, parameter: range };
+                }
+                return Weights { unknowns: fallback, parameter };
             }
         }
         self.problem.metric(&x.u, &mut self.mdu);

@@ -129,7 +129,8 @@ impl<'a, P: Problem> Tracer<'a, P> {
             .map_err(TraceError::Start)?;
 
         let mut range = range(&settings, start.p, &parameters[which]);
-        if problem.special_points().is_some() && settings.target.is_none() {
+        let scaled = problem.special_points().is_some_and(|curve| curve.scale().is_some());
+        if scaled && settings.target.is_none() {
             // how wide the domain is says nothing of the curve
             range = curve_scale(problem, ParamId(which), start.p);
         }
