@@ -36,8 +36,13 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// unknowns `(u, β, p)`: in that order each border cures what the core before it lacks, also on
 /// a trivial branch, where `f_p = 0`. Where branch points persist, `β` vanishes along the whole curve; where they
 /// are destroyed by `q` (a perfect pitchfork by an imperfection), `β` measures by how much, and the
-/// curve ends. It ends too, with a step that is too small, where the
-/// quadratic form on the null space vanishes: two branch points of a symmetric branch that meet.
+/// curve ends.
+///
+/// Where two branch points of a symmetric branch meet, the quadratic form on the null space vanishes
+/// and the equations have a double root. The curve turns there, or ends with a step that is too small.
+/// Points nearer to it than 1e-6 of the parameter are known to 1e-5 only, the others to rounding over
+/// the root of the distance.
+///
 /// Observables are `p`, those of the original problem, `beta` and `unfolding`.
 pub struct BranchPointCurve<'a, P: Problem> {
     base: Underlying<'a, P>,
