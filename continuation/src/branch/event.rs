@@ -159,6 +159,9 @@ pub enum Detail {
 pub struct FoldForm {
     /// `d²p/ds²` in the problem's metric; positive where the parameter has a minimum.
     pub curvature: f64,
+    /// Estimated error of it: as large as the values found where differences do not converge.
+    #[serde(default)]
+    pub curvature_error: f64,
 }
 
 /// How branches cross.
@@ -202,6 +205,10 @@ pub struct Crossing {
     /// `d²p/dx²` along the vertical branch of a pitchfork, `x` its arclength in the problem's
     /// metric; 0 otherwise.
     pub curvature: f64,
+    /// Estimated error of it: as large as the values found where differences do not converge. A
+    /// criticality is only claimed beyond it.
+    #[serde(default)]
+    pub curvature_error: f64,
     /// Tangent of the branch that was traced.
     pub traced: Direction,
     /// Tangents of the branches that leave, other than the one that was traced; each can be

@@ -1,5 +1,6 @@
 //! The normal form of a fold.
 
+use super::plateau::settle;
 use super::probe::{Extended, Probe};
 use crate::branch::FoldForm;
 use crate::problem::{EvalError, Problem};
@@ -14,11 +15,17 @@ pub(crate) fn fold_form<P: Problem>(
 ) -> Result<(FoldForm, f64), EvalError> {
     let z = Extended { u: x.u.clone(), p: x.p };
     let t = Extended { u: x.tu.clone(), p: x.tp };
-    let second = probe.second(&z, &t, 1.0, &[&t])?;
-    let along = -dot(left, &second[0]);
+    let bent = settle(|part| {
+        let second = probe.second(&z, &t, part, &[&t])?;
+        Ok(Some(-dot(left, &second[0])))
+    })?;
+    let Some(bent) = bent else { return Err(EvalError::NotFinite { at: 0 }) };
+    let along = bent.value;
     // what errors of the derivatives do to dp/ds, and so to its zero
     let missed = probe.derivative_error(&z, &t)?;
     let missed: f64 = missed.iter().zip(left).map(|(e, w)| e * w.abs()).sum();
     let moved = if missed > 0.0 { missed / along.abs() } else { 0.0 };
-    Ok((FoldForm { curvature: along / (x.length * x.length) }, moved))
+    let square = x.length * x.length;
+    let form = FoldForm { curvature: along / square, curvature_error: bent.error / square };
+    Ok((form, moved))
 }

@@ -9,6 +9,7 @@
 //! the scales of `f`, `u` or `p`.
 
 use super::kernel::Singular;
+use super::plateau::settle;
 use super::probe::{Extended, FIRST, Probe};
 use crate::branch::{Criticality, Crossing, Direction, Shape};
 use crate::linalg::Matrix;
@@ -70,6 +71,7 @@ pub(super) fn simple<P: Problem>(
         from_side: false,
         multiplicity: 1,
         curvature: 0.0,
+        curvature_error: 0.0,
         traced: direction(probe, traced.clone(), 0.0, 1.0),
         leaving: Vec::new(),
     };
@@ -89,6 +91,7 @@ pub(super) fn simple<P: Problem>(
             if let Some(bent) = bent {
                 let length = probe.length(fork);
                 crossing.curvature = bent.curvature / (length * length);
+                crossing.curvature_error = bent.error / (length * length);
                 crossing.criticality = bent.criticality;
                 if !from_side {
                     bend = 0.5 * crossing.curvature;
@@ -144,6 +147,7 @@ fn directions(a: f64, b: f64, c: f64) -> Option<[[f64; 2]; 2]> {
 struct Bent {
     /// `d²p/dx²`, `x` the multiple of the vertical direction.
     curvature: f64,
+    error: f64,
     criticality: Option<Criticality>,
 }
 
@@ -154,17 +158,20 @@ fn pitchfork<P: Problem>(
     fork: &Extended,
 ) -> Result<Option<Bent>, EvalError> {
     let w = at.left[0].clone();
-    let first = probe.second(&at.z, fork, 1.0, &[fork, trunk])?;
-    let minus: Vec<f64> = first[0].iter().map(|y| -y).collect();
-    let (h, _) = at.frame.solve(probe, &minus);
-    let with_h = probe.second(&at.z, fork, 1.0, &[&h])?;
-    let third = probe.third(&at.z, fork, 1.0, &[fork])?;
-    let (exchange, cubic) = (dot(&w, &first[1]), dot(&w, &third[0]) + 3.0 * dot(&w, &with_h[0]));
-    if exchange == 0.0 || !cubic.is_finite() {
-        return Ok(None);
-    }
-    let along = -cubic / (3.0 * exchange);
-    let curvature = h.p + along * trunk.p;
+    let mut exchange = f64::NAN;
+    let bent = settle(|part| {
+        let first = probe.second(&at.z, fork, part, &[fork, trunk])?;
+        let minus: Vec<f64> = first[0].iter().map(|y| -y).collect();
+        let (h, _) = at.frame.solve(probe, &minus);
+        let with_h = probe.second(&at.z, fork, part, &[&h])?;
+        let third = probe.third(&at.z, fork, part, &[fork])?;
+        exchange = dot(&w, &first[1]);
+        let cubic = dot(&w, &third[0]) + 3.0 * dot(&w, &with_h[0]);
+        let along = -cubic / (3.0 * exchange);
+        Ok((exchange != 0.0).then_some(h.p + along * trunk.p))
+    })?;
+    let Some(bent) = bent else { return Ok(None) };
+    let curvature = bent.value;
     // the critical eigenvalue on the trunk changes by exchange / (w·Mφ) per multiple of it
     let mut mass = probe.problem.new_jacobian();
     mass.set_zero();
@@ -182,13 +189,13 @@ fn pitchfork<P: Problem>(
     };
     // positive where the new solutions face a trunk that is unstable in the critical mode
     let soft = sign * exchange * curvature * trunk.p * crossing;
-    let significant = curvature.abs() > 1e-6 * probe.weights.parameter;
+    let significant = curvature.abs() > 1e-6 * probe.weights.parameter && bent.is_signed();
     let criticality = match soft {
         s if s > 0.0 && significant => Some(Criticality::Supercritical),
         s if s < 0.0 && significant => Some(Criticality::Subcritical),
         _ => None,
     };
-    Ok(Some(Bent { curvature, criticality }))
+    Ok(Some(Bent { curvature, error: bent.error, criticality }))
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 //! coefficient is that of Kuznetsov, *Elements of Applied Bifurcation Theory*, Eq. (10.35):
 //! `l₁ = Re pᴴ[C(q,q,q̄) − 2B(q, A₀⁻¹B(q,q̄)) + B(q̄, (2iωM − A₀)⁻¹B(q,q))] / (2ω)`, `A₀ = f_u`.
 
+use super::plateau::settle;
 use super::probe::{Extended, Probe};
 use crate::branch::{Criticality, Eigenvector, HopfForm};
 use crate::events::{bend, interpolate};
@@ -252,20 +253,14 @@ fn normal_form<P: Problem>(
     let reference = super::max_abs(&by_branch[0]).max(super::max_abs(&by_branch[1]));
     let amplitude = if reference > 0.0 { probe.amplitude(z, &a, reference) } else { None };
     let amplitude = amplitude.unwrap_or(1.0);
-    let mut value = [f64::NAN; 2];
-    for (value, x) in value.iter_mut().zip([amplitude, 0.5 * amplitude]) {
-        let Some(l) = lyapunov(probe, z, omega, critical, &p, (&a, &b), x)? else {
-            return Ok(None);
-        };
-        *value = l;
-    }
-    let [lyapunov, second] = value;
-    let lyapunov_error = (lyapunov - second).abs();
-    let criticality = match lyapunov {
-        l if l.abs() <= 3.0 * lyapunov_error => None,
+    let found = settle(|part| lyapunov(probe, z, omega, critical, &p, (&a, &b), part * amplitude))?;
+    let Some(found) = found else { return Ok(None) };
+    let criticality = match found.value {
+        _ if !found.is_signed() => None,
         l if l < 0.0 => Some(Criticality::Supercritical),
         _ => Some(Criticality::Subcritical),
     };
+    let (lyapunov, lyapunov_error) = (found.value, found.error);
     Ok(Some(HopfForm { frequency: omega, lyapunov, lyapunov_error, criticality }))
 }
 

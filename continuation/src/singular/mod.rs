@@ -11,6 +11,7 @@ mod forms;
 mod hopf;
 mod kernel;
 mod multiple;
+mod plateau;
 mod probe;
 mod roots;
 mod small;

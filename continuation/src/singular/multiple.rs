@@ -70,6 +70,7 @@ pub(super) fn analyse<P: Problem>(
         from_side,
         multiplicity: k,
         curvature: 0.0,
+        curvature_error: 0.0,
         traced: direction(probe, traced.clone(), 0.0, 1.0),
         leaving: Vec::new(),
     };

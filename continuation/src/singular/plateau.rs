@@ -1,0 +1,123 @@
+//! Derivatives by differences whose step meets the scale on which the function varies.
+//!
+//! The natural amplitude says where the nonlinearity matters, not on what scale it varies: a
+//! coefficient of the normal form may be another one on a hundredth of it. A value is believed where
+//! it stands still over a range of steps, the finest such range, and only then.
+
+use crate::problem::EvalError;
+
+/// Ratio of successive steps. Truncation errors of fourth order shrink 256 times.
+const FINER: f64 = 0.25;
+/// Most steps: rounding has all of a second derivative at the last one.
+const MOST: i32 = 9;
+/// The step far below the first two that shows a finer scale, 1000 times shorter.
+const DEEP: i32 = 5;
+/// Relative difference of the first two values that is truncation.
+const CONVERGED: f64 = 1e-4;
+/// Relative difference of the first two values that is rounding.
+const ROUNDING: f64 = 1e-7;
+/// Relative difference of values that stand still in rounding.
+const STANDS: f64 = 1e-2;
+
+/// A value with its estimated error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Settled {
+    pub(super) value: f64,
+    pub(super) error: f64,
+    /// Whether the value stands still anywhere; otherwise the error is the spread of all values.
+    pub(super) converged: bool,
+}
+
+impl Settled {
+    /// Whether the sign of the value is known.
+    pub(super) fn is_signed(&self) -> bool {
+        self.converged && self.value.abs() > 3.0 * self.error
+    }
+}
+
+/// The limit of `value` for short steps, given as parts of the natural one. `None` where it has no
+/// value.
+pub(super) fn settle(
+    mut value: impl FnMut(f64) -> Result<Option<f64>, EvalError>,
+) -> Result<Option<Settled>, EvalError> {
+    let mut at = |k: i32| value(FINER.powi(k)).map(|v| v.filter(|v| v.is_finite()));
+    let first = [at(0), at(1), at(DEEP)];
+    if let [Ok(Some(coarse)), Ok(Some(fine)), Ok(Some(deep))] = first {
+        let truncation = (coarse - fine).abs();
+        let size = coarse.abs().max(fine.abs());
+        if truncation <= CONVERGED * size && (deep - fine).abs() <= STANDS * size {
+            // a difference this small is rounding, of which the longer step has less
+            let value = if truncation <= ROUNDING * size { coarse } else { fine };
+            return Ok(Some(Settled { value, error: truncation, converged: true }));
+        }
+    }
+    let mut values = Vec::new();
+    let mut failure = None;
+    for k in 0..MOST {
+        let known = match k {
+            0 => first[0],
+            1 => first[1],
+            DEEP => first[2],
+            _ => at(k),
+        };
+        match known {
+            Ok(Some(v)) => values.push(v),
+            Ok(None) => return Ok(None),
+            // a long step may leave the domain, a short one does not
+            Err(error) => failure = Some(error),
+        }
+    }
+    if values.len() < 3 {
+        return failure.map_or(Ok(None), Err);
+    }
+    let spread = |v: &[f64]| {
+        let (lo, hi) = v
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(*v), hi.max(*v)));
+        hi - lo
+    };
+    let mut still = values.windows(3).filter(|w| spread(w) <= STANDS * w[1].abs());
+    if let Some(finest) = still.next_back() {
+        // of the two neighbours the nearer one says what truncation or rounding leave
+        let near = (finest[0] - finest[1]).abs().min((finest[2] - finest[1]).abs());
+        let error = near.max(1e-2 * spread(finest));
+        return Ok(Some(Settled { value: finest[1], error, converged: true }));
+    }
+    let error = spread(&values);
+    let value = values[values.len() / 3];
+    Ok(Some(Settled { value, error, converged: false }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(f: impl Fn(f64) -> f64) -> Settled {
+        settle(|h| Ok(Some(f(h)))).unwrap().unwrap()
+    }
+
+    #[test]
+    fn values_settle_on_the_finest_scale() {
+        // smooth: truncation of fourth order
+        let smooth = of(|h| 2.0 + 1e-5 * h.powi(4));
+        assert!((smooth.value - 2.0).abs() <= smooth.error && smooth.is_signed());
+        for e in [1e-1, 3e-2, 1e-2] {
+            // one coefficient on the natural scale, another one below e
+            let found = of(|h: f64| 6.0 - 30.0 / (1.0 + (h / e).powi(2)).powi(2));
+            assert!((found.value + 24.0).abs() < 0.3 && found.is_signed(), "{e} {found:?}");
+        }
+        // rounding grows as the step shrinks
+        let noisy = of(|h| 1.0 + 1e-9 * (1e3 / h).sin() / (h * h));
+        assert!((noisy.value - 1.0).abs() < 1e-3 && noisy.is_signed(), "{noisy:?}");
+        // nothing but rounding has no sign
+        let zero = of(|h| 1e-9 * (1e3 / h).sin() / h);
+        assert!(!zero.is_signed(), "{zero:?}");
+    }
+
+    #[test]
+    fn steps_that_leave_the_domain_teach_nothing() {
+        let found =
+            settle(|h| if h > 0.01 { Err(EvalError::NotFinite { at: 0 }) } else { Ok(Some(3.0)) });
+        assert_eq!(found.unwrap().map(|f| (f.value, f.converged)), Some((3.0, true)));
+    }
+}
