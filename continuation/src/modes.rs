@@ -7,7 +7,7 @@
 //! spectrum; others by shift-invert Arnoldi about zero, which proves nothing: an eigenvalue far from
 //! zero with a large imaginary part can be missed.
 
-use crate::linalg::{Arnoldi, Dense, EigenSettings, Lanczos, Matrix};
+use crate::linalg::{Arnoldi, Dense, EigenSettings, Lanczos, Matrix, Spectrum};
 use crate::problem::{EvalError, Problem, Stability, check_finite};
 use crate::settings::Counting;
 
@@ -71,6 +71,21 @@ const FULL: usize = crate::linalg::MAX_SPECTRUM;
 
 /// Solves after which the search for a few eigenvalues ends with what it has.
 const MOST_SOLVES: usize = 200;
+
+/// A real part that counts as zero: rounding of a well-conditioned eigenvalue.
+pub(crate) fn zero(values: &[(f64, f64)]) -> f64 {
+    let largest = values.iter().fold(0.0, |m: f64, (re, im)| m.max(re.hypot(*im)));
+    4.0 * values.len() as f64 * f64::EPSILON * largest
+}
+
+/// Eigenvalues whose error is this many times what counts as zero are still told from zero by the
+/// steps of a branch.
+const RESOLVED: f64 = 1e4;
+
+/// Whether the number of unstable eigenvalues is certain.
+pub(crate) fn has_certain_signs(spectrum: &Spectrum) -> bool {
+    spectrum.has_certain_signs(RESOLVED * zero(&spectrum.values))
+}
 
 fn dense<A: Matrix>(a: &A) -> Dense {
     let n = a.dim();
@@ -145,11 +160,12 @@ impl<P: Problem> ModeSolver<P> {
         })
     }
 
-    /// All eigenvalues, where a full spectrum is affordable.
-    pub(crate) fn spectrum(&self, jacobian: &P::Jacobian) -> Option<Vec<(f64, f64)>> {
-        jacobian.spectrum(self.mass.as_ref()).or_else(|| {
+    /// All eigenvalues with their errors, where a full spectrum is affordable.
+    pub(crate) fn spectrum(&self, jacobian: &P::Jacobian) -> Option<Spectrum> {
+        jacobian.spectrum_with_errors(self.mass.as_ref()).or_else(|| {
             let small = jacobian.dim() <= self.small;
-            small.then(|| dense(jacobian).spectrum(self.mass.as_ref().map(dense).as_ref()))?
+            let mass = || self.mass.as_ref().map(dense);
+            small.then(|| dense(jacobian).spectrum_with_errors(mass().as_ref()))?
         })
     }
 
@@ -169,9 +185,9 @@ impl<P: Problem> ModeSolver<P> {
             return self.symmetric(problem, jacobian, negative, positive, values);
         }
         let spectrum = self.spectrum(jacobian);
-        let certain = spectrum.is_some();
+        let certain = spectrum.as_ref().is_some_and(has_certain_signs);
         let spectrum = match spectrum {
-            Some(plain) => self.weighted(problem, jacobian).unwrap_or(plain),
+            Some(plain) => self.weighted(problem, jacobian).unwrap_or(plain.values),
             None => self.few(problem, jacobian, self.wanted),
         };
         self.pick(spectrum, values);

@@ -250,6 +250,17 @@ pub trait SpecialPoints {
     fn fallback_scale(&self) -> Option<f64> {
         None
     }
+
+    /// How far the equations of the curve are from a double root, where they would not determine its
+    /// points; compared with its values elsewhere on the curve. `None` where they have none.
+    ///
+    /// # Errors
+    /// Where that problem has no value.
+    fn separation(&self, u: &[f64], p: &[f64]) -> Result<Option<f64>, EvalError> {
+        let _ = (u, p);
+        Ok(None)
+    }
+
     /// What a zero of an observable is, if it is a special point.
     fn zero(&self, observable: usize) -> Option<EventKind>;
 

@@ -311,3 +311,18 @@ fn branches_of_another_diagram_are_refused() {
     let unbounded = Explorer::new(&other, "p", &[0.0], &[-1.0], DiagramSettings::default(), &[]);
     assert_eq!(unbounded.err(), Some(DiagramError::Unbounded));
 }
+
+/// `x (p³ − x²)`: the sign of the determinant shows a branch point, no quadratic form what leaves it.
+#[test]
+fn branch_points_of_unknown_branches_leave_a_diagram_incomplete() {
+    let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| {
+        r[0] = u[0] * (p[0].powi(3) - u[0] * u[0]);
+    });
+    let diagram = explore(&problem, &[0.0], &[-1.0], within(-1.0, 1.0));
+    let branch = &diagram.branches[0].branch;
+    let events: Vec<_> = branch.events_of(&EventKind::BranchPoint).collect();
+    assert!(events.len() == 1 && events[0].p.abs() < 0.1, "{events:?}");
+    assert!(events[0].p.abs() <= events[0].error_estimate, "{events:?}");
+    assert!(diagram.branches[0].unresolved() == 1 || diagram.branches.len() > 1, "{events:?}");
+    assert!(!diagram.is_complete());
+}

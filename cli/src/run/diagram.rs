@@ -350,8 +350,14 @@ fn ending(diagram: &Diagram) -> (&'static str, String) {
                     format!("; the counts of unstable modes of {doubtful} branches are not certain")
                 }
             };
-            let word = if count == 0 && doubtful == 0 { "complete" } else { "incomplete" };
-            (word, detail + &doubt)
+            let open: usize = diagram.branches.iter().map(DiagramBranch::unresolved).sum();
+            let unresolved = match open {
+                0 => String::new(),
+                1 => "; at one branch point it is not known which branches leave".to_owned(),
+                _ => format!("; at {open} branch points it is not known which branches leave"),
+            };
+            let word = if diagram.is_complete() { "complete" } else { "incomplete" };
+            (word, detail + &doubt + &unresolved)
         }
     }
 }

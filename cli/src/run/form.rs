@@ -42,11 +42,10 @@ pub(super) fn form(branch: &Branch, event: &Event) -> FormRecord {
     }
 }
 
-/// Whether all numbers of unstable modes are certain; `None` where there are none.
+/// Whether all numbers of unstable modes are certain and their changes explained; `None` where there
+/// are none.
 pub(super) fn certified(branch: &Branch) -> Option<bool> {
-    let mut counted = branch.points.iter().filter(|p| p.unstable.is_some()).peekable();
-    counted.peek()?;
-    Some(counted.all(|p| p.certified))
+    branch.points.iter().any(|p| p.unstable.is_some()).then(|| branch.is_certain())
 }
 
 /// The columns that tell the stability of a point in more detail: whether the count is certain,
@@ -61,7 +60,7 @@ impl StabilityColumns {
     pub(super) fn of(branch: &Branch) -> Self {
         let values = branch.points.iter().map(|p| &p.eigenvalues);
         StabilityColumns {
-            certified: certified(branch) == Some(false),
+            certified: branch.points.iter().any(|p| p.unstable.is_some() && !p.certified),
             complex: values.clone().flatten().any(|(_, im)| *im != 0.0),
             count: values.map(Vec::len).max().unwrap_or(0),
         }

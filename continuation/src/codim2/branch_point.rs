@@ -39,9 +39,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// curve ends.
 ///
 /// Where two branch points of a symmetric branch meet, the quadratic form on the null space vanishes
-/// and the equations have a double root. The curve turns there, or ends with a step that is too small.
-/// Points nearer to it than 1e-6 of the parameter are known to 1e-5 only, the others to rounding over
-/// the root of the distance.
+/// and the equations have a double root, which determines no state beyond half the digits. No step ends
+/// there: the curve goes on behind it, or ends with a step that is too small.
 ///
 /// Observables are `p`, those of the original problem, `beta` and `unfolding`.
 pub struct BranchPointCurve<'a, P: Problem> {
@@ -357,6 +356,22 @@ fn astray<P: Problem>(base: &Underlying<'_, P>, work: &mut Work<P>) -> bool {
     longest.sqrt() > 1.0 / ALIGNED || left > 1.0 / ALIGNED
 }
 
+impl<P: Problem> BranchPointCurve<'_, P> {
+    /// The quadratic form on the kernel, whose vectors are as long as the scales.
+    fn form(work: &Work<P>) -> [[f64; 2]; 2] {
+        let kernel = &work.kernel;
+        let mut form = [[0.0; 2]; 2];
+        for (k, row) in form.iter_mut().enumerate() {
+            let by_first = Self::by_parameters(work, k)[0];
+            for (i, entry) in row.iter_mut().enumerate() {
+                let by_u = dot(&work.differences[k].derivatives[0], &kernel.right[i]);
+                *entry = kernel.pi[i] * by_first - by_u;
+            }
+        }
+        form
+    }
+}
+
 impl<P: Problem> Problem for BranchPointCurve<'_, P> {
     type Jacobian = Arrow<P::Jacobian>;
 
@@ -470,16 +485,7 @@ impl<P: Problem> Problem for BranchPointCurve<'_, P> {
         self.bring(work, x, p, Level::Gradient)?;
         out[0] = x[n + 1];
         self.base.problem.observe(&x[..n], &work.p, &mut out[1..last - 1])?;
-        // the quadratic form on the kernel, whose vectors are as long as the scales
-        let kernel = &work.kernel;
-        let mut curved = 0.0_f64;
-        for k in 0..2 {
-            let by_first = Self::by_parameters(work, k)[0];
-            for i in 0..2 {
-                let by_u = dot(&work.differences[k].derivatives[0], &kernel.right[i]);
-                curved = curved.max((kernel.pi[i] * by_first - by_u).abs());
-            }
-        }
+        let curved = Self::form(work).iter().flatten().fold(0.0_f64, |m, f| m.max(f.abs()));
         out[last - 1] = x[n];
         out[last] = if curved > 0.0 { x[n] / curved } else { 0.0 };
         Ok(())
@@ -493,6 +499,16 @@ impl<P: Problem> SpecialPoints for BranchPointCurve<'_, P> {
 
     fn fallback_scale(&self) -> Option<f64> {
         Some(self.base.scales.unknowns)
+    }
+
+    fn separation(&self, x: &[f64], p: &[f64]) -> Result<Option<f64>, EvalError> {
+        let work = &mut *self.work.borrow_mut();
+        self.bring(work, x, p, Level::Gradient)?;
+        let form = Self::form(work);
+        // where the form vanishes or has a double root the tangents of the branches are not two
+        let discriminant = form[0][1] * form[1][0] - form[0][0] * form[1][1];
+        let left = dot(&work.kernel.left, &work.kernel.left).sqrt();
+        Ok(Some(discriminant.abs().sqrt() / left))
     }
 
     fn zero(&self, _observable: usize) -> Option<EventKind> {

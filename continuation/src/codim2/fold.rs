@@ -7,7 +7,7 @@ use super::underlying::{CurveError, Underlying};
 use crate::branch::{Branch, Event, EventKind, Point};
 use crate::events::Watch;
 use crate::linalg::{Arrow, Matrix, max_abs};
-use crate::modes::ModeSolver;
+use crate::modes::{ModeSolver, has_certain_signs};
 use crate::problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints, Stability};
 use crate::settings::Settings;
 use crate::step::{dot, hessian_inertia};
@@ -476,9 +476,11 @@ impl<P: Problem> SpecialPoints for FoldCurve<'_, P> {
             }
             _ => {}
         }
-        let Some(mut values) = self.modes.spectrum(&work.jacobian) else {
+        let Some(spectrum) = self.modes.spectrum(&work.jacobian) else {
             return Ok(Others::default());
         };
+        let certified = has_certain_signs(&spectrum);
+        let mut values = spectrum.values;
         let size = |v: &(f64, f64)| v.0.hypot(v.1);
         let critical =
             (0..values.len()).min_by(|a, b| size(&values[*a]).total_cmp(&size(&values[*b])));
@@ -488,7 +490,7 @@ impl<P: Problem> SpecialPoints for FoldCurve<'_, P> {
         let sign = if problem.stability() == Stability::Dynamics { 1.0 } else { -1.0 };
         let unstable = values.iter().filter(|(re, _)| sign * re > 0.0).count();
         let unstable = Some(unstable.saturating_sub(multipliers));
-        Ok(Others { unstable, certified: true, values })
+        Ok(Others { unstable, certified, values })
     }
 
     fn scale(&self) -> Option<f64> {

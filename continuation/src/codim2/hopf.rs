@@ -8,7 +8,7 @@ use super::underlying::{CurveError, Underlying};
 use crate::branch::{Branch, Event, EventKind, Point};
 use crate::events::Watch;
 use crate::linalg::{Arrow, Matrix};
-use crate::modes::ModeSolver;
+use crate::modes::{ModeSolver, has_certain_signs};
 use crate::problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints};
 use crate::settings::Settings;
 use crate::singular::{Extended, Probe, lyapunov_coefficient};
@@ -105,7 +105,7 @@ impl<'a, P: Problem> HopfCurve<'a, P> {
             Some(form) => form.frequency,
             None => {
                 let all = modes.spectrum(&jacobian).ok_or(CurveError::NoNullVector)?;
-                let pairs = all.into_iter().filter(|(_, im)| *im > 0.0);
+                let pairs = all.values.into_iter().filter(|(_, im)| *im > 0.0);
                 let near = pairs.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
                 near.ok_or(CurveError::NoNullVector)?.1
             }
@@ -453,8 +453,8 @@ impl<P: Problem> SpecialPoints for HopfCurve<'_, P> {
         let work = &mut *self.work.borrow_mut();
         self.bring(work, x, p, Level::Null)?;
         let all = self.modes.spectrum(&work.jacobian);
-        let certified = all.is_some();
-        let mut values = all.unwrap_or_else(|| {
+        let certified = all.as_ref().is_some_and(has_certain_signs);
+        let mut values = all.map(|all| all.values).unwrap_or_else(|| {
             let floor = f64::EPSILON * work.jacobian.norm();
             work.jacobian.factor(floor);
             self.modes.few(self.base.problem, &mut work.jacobian, FEW)

@@ -62,7 +62,7 @@ mod settings;
 pub use explorer::Explorer;
 pub use settings::{DiagramSettings, Search};
 
-use crate::branch::{Branch, Point, Statistics};
+use crate::branch::{Branch, Event, EventKind, Point, Shape, Statistics};
 use crate::near::NearBifurcation;
 use crate::settings::SettingsError;
 use crate::tracer::{Progress, TraceError};
@@ -114,6 +114,18 @@ pub struct DiagramBranch {
     pub near: Vec<NearBifurcation>,
 }
 
+impl DiagramBranch {
+    /// Number of its branch points at which it is not known for sure which branches leave: without a
+    /// normal form, or with a degenerate one.
+    pub fn unresolved(&self) -> usize {
+        let unknown = |event: &&Event| {
+            let shape = event.crossing().map(|crossing| crossing.shape);
+            shape.is_none_or(|shape| shape == Shape::Degenerate)
+        };
+        self.branch.events_of(&EventKind::BranchPoint).filter(unknown).count()
+    }
+}
+
 /// A branch point, and all places where it was met.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Joint {
@@ -150,11 +162,15 @@ pub struct Diagram {
 }
 
 impl Diagram {
-    /// Whether everything asked for was followed, every branch to its end, and no special point may
-    /// have been missed for want of a certain count ([`Branch::is_certain`]).
+    /// Whether everything asked for was followed, every branch to its end, no special point may have
+    /// been missed for want of a certain count ([`Branch::is_certain`]), and at every branch point the
+    /// branches that leave are known. What a step jumps over without a change of any count, and
+    /// branches that hang together with none of these, are not part of the promise.
     pub fn is_complete(&self) -> bool {
         self.stopped == DiagramStop::Complete
-            && self.branches.iter().all(|one| one.branch.is_complete() && one.branch.is_certain())
+            && self.branches.iter().all(|one| {
+                one.branch.is_complete() && one.branch.is_certain() && one.unresolved() == 0
+            })
     }
 
     /// What all branches together cost.

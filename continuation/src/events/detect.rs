@@ -226,6 +226,12 @@ impl Detector {
             }
             if !vertical {
                 self.detect_crossings(a, b, fold, final_say)?;
+            } else if a.count != b.count || a.orientation != b.orientation {
+                // no parameter tells where
+                self.doubt = Some(
+                    "stability changes while the parameter stands still to rounding, where special \
+                     points are not looked for",
+                );
             }
             if self.separate {
                 self.detect_stability(a, b, final_say)?;

@@ -1,7 +1,7 @@
 //! A matrix with a few full rows and columns.
 
 use super::vector::{add_scaled, dot, max_abs};
-use super::{Bordered, Dense, Facts, Matrix};
+use super::{Bordered, Dense, Facts, Matrix, Spectrum};
 
 /// Largest dimension of which an [`Arrow`] computes the full spectrum.
 const MAX_SPECTRUM: usize = 100;
@@ -156,12 +156,19 @@ impl<A: Matrix> Matrix for Arrow<A> {
         true
     }
 
-    /// Through a [`Dense`] copy, up to 100 unknowns; `None` beyond.
+    /// Through a [`Dense`] copy; `None` above [`MAX_SPECTRUM`] unknowns.
     fn spectrum(&self, mass: Option<&Self>) -> Option<Vec<(f64, f64)>> {
         if self.dim() > MAX_SPECTRUM {
             return None;
         }
         dense(self).spectrum(mass.map(dense).as_ref())
+    }
+
+    fn spectrum_with_errors(&self, mass: Option<&Self>) -> Option<Spectrum> {
+        if self.dim() > MAX_SPECTRUM {
+            return None;
+        }
+        dense(self).spectrum_with_errors(mass.map(dense).as_ref())
     }
 
     fn complex(&self, imaginary: &Self) -> Option<Self> {

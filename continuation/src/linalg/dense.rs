@@ -3,6 +3,7 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Scale, Side};
 
+use super::spectrum::{Spectrum, balance, deficiency, with_errors};
 use super::vector::{add_scaled, dot, max_abs, pivot_or_floor, sign, solve_refined};
 use super::{Facts, Matrix};
 
@@ -54,6 +55,22 @@ impl Dense {
     /// Sets entry `(i, j)`.
     pub fn set(&mut self, i: usize, j: usize, value: f64) {
         self.entries[i + j * self.n] = value;
+    }
+
+    /// The eigenvalues of symmetric matrices, with a mass matrix that is positive definite by a margin;
+    /// `None` of others.
+    fn real_spectrum(&self, mass: Option<&Self>) -> Option<Option<Vec<(f64, f64)>>> {
+        if !self.is_symmetric() {
+            return None;
+        }
+        let real = |values: Vec<f64>| values.into_iter().map(|v| (v, 0.0)).collect();
+        let a = self.to_faer()?;
+        let reduced = match mass {
+            None => a,
+            Some(mass) if mass.is_symmetric() => reduce(&a, &mass.to_faer()?)?,
+            Some(_) => return None,
+        };
+        Some(reduced.self_adjoint_eigenvalues(Side::Lower).ok().map(real))
     }
 
     /// Adds to entry `(i, j)`.
@@ -263,23 +280,44 @@ impl Matrix for Dense {
         if self.n > MAX_SPECTRUM {
             return None;
         }
-        let a = self.to_faer()?;
-        let real = |values: Vec<f64>| values.into_iter().map(|v| (v, 0.0)).collect();
+        if let Some(real) = self.real_spectrum(mass) {
+            return real;
+        }
+        let mut a = self.to_faer()?;
         let Some(mass) = mass else {
-            if self.is_symmetric() {
-                return a.self_adjoint_eigenvalues(Side::Lower).ok().map(real);
-            }
+            balance(&mut a);
             let values = a.eigenvalues().ok()?;
             return Some(values.iter().map(|z| (z.re, z.im)).collect());
         };
-        let m = mass.to_faer()?;
-        if self.is_symmetric()
-            && mass.is_symmetric()
-            && let Some(reduced) = reduce(&a, &m)
-        {
-            return reduced.self_adjoint_eigenvalues(Side::Lower).ok().map(real);
+        let (inverse, shift, unit) = inverted(&a, &mass.to_faer()?, self.norm(), mass.norm())?;
+        let values = inverse.eigenvalues().ok()?;
+        let finite = values.iter().filter(|z| is_finite((z.re, z.im), unit));
+        Some(finite.map(|z| from_inverse((z.re, z.im), shift)).collect())
+    }
+
+    fn spectrum_with_errors(&self, mass: Option<&Self>) -> Option<Spectrum> {
+        if self.n > MAX_SPECTRUM {
+            return None;
         }
-        pencil_eigenvalues(&a, &m, self.norm(), mass.norm())
+        if let Some(real) = self.real_spectrum(mass) {
+            let real = real?;
+            let largest = real.iter().fold(0.0, |m: f64, v| m.max(v.0.abs()));
+            return Some(Spectrum::uniform(real, 4.0 * self.n as f64 * f64::EPSILON * largest));
+        }
+        let a = self.to_faer()?;
+        let Some(mass) = mass else { return with_errors(a) };
+        let m = mass.to_faer()?;
+        let (inverse, shift, unit) = inverted(&a, &m, self.norm(), mass.norm())?;
+        let found = with_errors(inverse)?;
+        let all = found.values.iter().zip(&found.errors);
+        let finite = all.filter(|(z, _)| is_finite(**z, unit));
+        // an error of the inverse moves the eigenvalue by that of its square
+        let moved = |((re, im), error): (&(f64, f64), &f64)| {
+            (from_inverse((*re, *im), shift), error / (re * re + im * im))
+        };
+        let (values, errors): (Vec<_>, Vec<_>) = finite.map(moved).unzip();
+        let complete = self.n - values.len() == deficiency(&m);
+        Some(Spectrum { values, errors, complete })
     }
 
     fn complex(&self, imaginary: &Self) -> Option<Self> {
@@ -317,20 +355,16 @@ fn reduce(a: &Mat<f64>, m: &Mat<f64>) -> Option<Mat<f64>> {
     Some(Mat::from_fn(n, n, |i, j| 0.5 * (c[(i, j)] + c[(j, i)])))
 }
 
-/// The finite eigenvalues of `A x = λ M x`, by those of `(A − σM)⁻¹M`.
+/// `(A − σM)⁻¹M`, whose eigenvalues `1/(λ − σ)` are those of `A x = λ M x`, with `σ` and the unit
+/// `|A| / |M|`.
 ///
-/// Not by faer's QZ: version 0.24 returns wrong conjugates, and NaN from some size on. The error
-/// is of the same order, `ε |A| / |M|` times the condition of the eigenvalue, as long as
-/// `A − σM` is well conditioned for one of the shifts tried; all are of the size `|A| / |M|`.
-fn pencil_eigenvalues(
-    a: &Mat<f64>,
-    m: &Mat<f64>,
-    a_norm: f64,
-    m_norm: f64,
-) -> Option<Vec<(f64, f64)>> {
+/// Not faer's QZ: version 0.24 returns wrong conjugates, and NaN from some size on. The error is of the
+/// same order, `ε |A| / |M|` times the condition of the eigenvalue, as long as `A − σM` is well
+/// conditioned for one of the shifts tried; all are of the size `|A| / |M|`.
+fn inverted(a: &Mat<f64>, m: &Mat<f64>, a_norm: f64, m_norm: f64) -> Option<(Mat<f64>, f64, f64)> {
     let n = a.nrows();
     if m_norm == 0.0 {
-        return Some(Vec::new());
+        return Some((Mat::zeros(n, n), 0.0, 1.0));
     }
     let unit = if a_norm > 0.0 { a_norm / m_norm } else { 1.0 };
     let mut best = None;
@@ -346,10 +380,15 @@ fn pencil_eigenvalues(
         }
     }
     let (shift, lu) = best?;
-    let inverses = lu.solve(m).eigenvalues().ok()?;
-    let finite = inverses.iter().filter_map(|z| {
-        let square = z.re * z.re + z.im * z.im;
-        (square.sqrt() * unit * INFINITE >= 1.0).then(|| (shift + z.re / square, -z.im / square))
-    });
-    Some(finite.collect())
+    Some((lu.solve(m), shift, unit))
+}
+
+/// Whether `1/(λ − σ)` belongs to a finite eigenvalue.
+fn is_finite((re, im): (f64, f64), unit: f64) -> bool {
+    re.hypot(im) * unit * INFINITE >= 1.0
+}
+
+fn from_inverse((re, im): (f64, f64), shift: f64) -> (f64, f64) {
+    let square = re * re + im * im;
+    (shift + re / square, -im / square)
 }

@@ -37,6 +37,7 @@ mod scalar;
 mod small_symmetric;
 mod sparse;
 mod sparse_lu;
+mod spectrum;
 mod symmetric_band;
 mod vector;
 
@@ -50,6 +51,7 @@ pub use dense::{Dense, MAX_SPECTRUM};
 pub use eigen::{EigenReport, EigenSettings};
 pub use lanczos::Lanczos;
 pub use sparse::{OutsidePattern, Sparse};
+pub use spectrum::Spectrum;
 pub use symmetric_band::{MAX_GROWTH, SymmetricBand};
 
 /// What a factorisation learned about its matrix.
@@ -120,6 +122,10 @@ pub trait Matrix: Clone + Send {
     fn spectrum(&self, mass: Option<&Self>) -> Option<Vec<(f64, f64)>> {
         let _ = mass;
         None
+    }
+    /// The same with what rounding may have moved each of them by. Dearer.
+    fn spectrum_with_errors(&self, mass: Option<&Self>) -> Option<Spectrum> {
+        self.spectrum(mass).map(Spectrum::unknown)
     }
     /// Numbers of negative and positive eigenvalues of the symmetric part `(A + Aᵀ)/2` of a matrix
     /// that is stored without symmetry, where they are cheap and certain; `None` (the default)

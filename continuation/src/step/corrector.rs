@@ -399,6 +399,13 @@ impl<'a, P: Problem> Core<'a, P> {
         along
     }
 
+    /// How far a state of a curve of special points is from one where two of them meet.
+    pub(crate) fn separation(&mut self, x: &State) -> Result<Option<f64>, Refusal> {
+        let Some(curve) = self.problem.special_points() else { return Ok(None) };
+        self.p[self.which.0] = x.p;
+        curve.separation(&x.u, &self.p).map_err(Refusal::Evaluation)
+    }
+
     /// What the count of unstable modes remembers of the latest state.
     pub(crate) fn counted(&self) -> usize {
         self.stability.last

@@ -50,6 +50,10 @@ pub enum Refusal {
     /// The step ends on a special point, where the sides of it cannot be told apart.
     #[error("the step ends on a special point")]
     OnSpecialPoint,
+    /// The step of a curve of special points ends where two of them meet: states there are not
+    /// determined by their equations.
+    #[error("two special points of the curve meet there")]
+    Meeting,
     /// The step away from a branch point fell back onto the branch that led to it.
     #[error("the step falls back onto the branch that led to the branch point")]
     OldBranch,

@@ -6,7 +6,7 @@
 
 use super::State;
 use crate::linalg::Matrix;
-use crate::modes::ModeSolver;
+use crate::modes::{ModeSolver, has_certain_signs, zero};
 use crate::problem::{ParamId, Problem, Stability};
 use crate::settings::Counting;
 
@@ -109,9 +109,9 @@ impl<P: Problem> StabilityCount<P> {
                 self.solver.pick(few, &mut x.eigenvalues);
             }
         } else if let Some(spectrum) = self.solver.spectrum(jacobian) {
-            self.read(&spectrum, energy, x);
-            x.certified = true;
-            let reported = self.solver.weighted(problem, jacobian).unwrap_or(spectrum);
+            self.read(&spectrum.values, energy, x);
+            x.certified = has_certain_signs(&spectrum);
+            let reported = self.solver.weighted(problem, jacobian).unwrap_or(spectrum.values);
             self.solver.pick(reported, &mut x.eigenvalues);
         } else if self.sense != Stability::None {
             // more than twice as many as were unstable last, so that the unstable ones are among them
@@ -139,8 +139,7 @@ impl<P: Problem> StabilityCount<P> {
 
     /// Counts in a spectrum, or in a part of it.
     fn read(&self, spectrum: &[(f64, f64)], energy: bool, x: &mut State) {
-        let largest = spectrum.iter().fold(0.0, |m: f64, (re, im)| m.max(re.hypot(*im)));
-        let zero = 4.0 * spectrum.len() as f64 * f64::EPSILON * largest;
+        let zero = zero(spectrum);
         let sign = if energy { -1.0 } else { 1.0 };
         x.count = Some(spectrum.iter().filter(|(re, _)| sign * re > zero).count());
         x.critical = spectrum.iter().any(|(re, _)| re.abs() <= zero);

@@ -42,6 +42,11 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use switching::Departure;
 
+/// Part of the separation on a curve of special points below which two of them meet.
+const MEETING: f64 = 1e-3;
+/// Distance from a bound, in scales of the parameter, that is rounding.
+const ON_BOUND: f64 = 1e-14;
+
 /// Traces one branch; yields its points in order, special points included, the start first.
 ///
 /// Work is done when the next point is asked for. After the last point [`Tracer::stopped`] says why
@@ -72,6 +77,8 @@ pub struct Tracer<'a, P: Problem> {
     anchor_s: f64,
     // the scales that were expected, while those of the branch are smaller
     expected: Option<Weights>,
+    // the largest separation on a curve of special points so far
+    separation: f64,
     s: f64,
     running_unstable: Option<usize>,
     queue: VecDeque<Point>,
@@ -179,6 +186,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             anchor: start.clone(),
             anchor_s: 0.0,
             expected: None,
+            separation: 0.0,
             s: 0.0,
             running_unstable: start.unstable,
             queue: VecDeque::new(),
@@ -372,7 +380,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
     /// orientation, the branch runs into a branch point that is imperfect by less than can be
     /// followed. The shortest step that did cross is taken, and marks the branch point.
     fn leap(&mut self, refusal: &Refusal) -> bool {
-        if matches!(refusal, Refusal::Evaluation(_)) {
+        if matches!(refusal, Refusal::Evaluation(_) | Refusal::Meeting) {
             return false;
         }
         let Some(h) = self.crossing.take() else { return false };
@@ -391,6 +399,16 @@ impl<'a, P: Problem> Tracer<'a, P> {
         false
     }
 
+    /// Whether the whole step lies on a bound of the domain, to rounding: a branch that tends to it
+    /// would be followed along differences that are rounding.
+    fn runs_along_bound(&self) -> bool {
+        let Some((lo, hi)) = self.settings.domain else { return false };
+        let near = ON_BOUND * self.core.weights.parameter;
+        let on =
+            |bound: f64| [&self.current, &self.trial].iter().all(|x| (x.p - bound).abs() <= near);
+        self.left_start && (on(lo) || on(hi))
+    }
+
     /// Tries a step of scaled length `h`.
     fn attempt(&mut self, h: f64, final_say: bool) -> Result<(), Refusal> {
         self.predict(h);
@@ -399,6 +417,17 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let secant = core.secant(current, trial);
         let tangents = core.weights.dot(&current.mtu, current.tp, &trial.tu, trial.tp);
         let quality = judge(settings, trial, h, &corrected, secant, tangents)?;
+        if let Some(separation) = core.separation(trial)? {
+            self.separation = self.separation.max(separation);
+            if separation < MEETING * self.separation {
+                return Err(Refusal::Meeting);
+            }
+        }
+        if self.runs_along_bound() {
+            let detail = "the branch runs along the bound of the domain".to_owned();
+            self.end(StopReason::Domain, detail);
+            return Ok(());
+        }
         // counts that are lower bounds are followed up step by step: not beyond the end
         let certain = self.current.certified && self.trial.certified;
         let h = if certain { h } else { self.end_at_bound(h) };

@@ -29,6 +29,8 @@ pub(crate) struct Snapshot {
     expected: Option<Weights>,
     #[serde(default)]
     first: bool,
+    #[serde(default)]
+    separation: f64,
     s: f64,
     running_unstable: Option<usize>,
     queue: VecDeque<Point>,
@@ -59,6 +61,7 @@ impl<P: Problem> Tracer<'_, P> {
             anchor_s: self.anchor_s,
             expected: self.expected,
             first: self.first,
+            separation: self.separation,
             s: self.s,
             running_unstable: self.running_unstable,
             queue: self.queue.clone(),
@@ -102,6 +105,7 @@ impl<P: Problem> Tracer<'_, P> {
         self.anchor_s = from.anchor_s;
         self.expected = from.expected;
         self.first = from.first;
+        self.separation = from.separation;
         self.s = from.s;
         self.running_unstable = from.running_unstable;
         self.queue = from.queue;
