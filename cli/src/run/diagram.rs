@@ -1,7 +1,7 @@
 //! Whole diagrams, of every kind of problem.
 
 use super::stability::Stability;
-use super::{RunError, contact, general, ring_load, states};
+use super::{RunError, contact, general, ring_load, stability, states};
 use crate::case::{ProblemCase, ResolvedCase};
 use crate::output::{BranchRecord, DiagramResult, From, NearRecord, TraceResult};
 use crate::pictures::{Curve, Mark};
@@ -296,6 +296,7 @@ fn result(
         }
     });
     let mut branches: Vec<BranchRecord> = branches.collect();
+    let stopped_detail = stopped_detail + &left_alone(&branches);
     let renumbered = |branch: usize, event: usize| {
         let scan = scans.iter().find(|(id, _)| *id == branch);
         scan.map_or(event, |(_, stability)| stability.renumbered(event))
@@ -319,6 +320,16 @@ fn result(
         newton_iterations: statistics.newton_iterations,
         seconds,
         axes: (x.to_owned(), y.to_owned()),
+    }
+}
+
+/// What is known to leave the branches and is followed by none: states without their symmetry.
+fn left_alone(branches: &[BranchRecord]) -> String {
+    let events = branches.iter().flat_map(|one| &one.trace.events);
+    match events.filter(|event| event.kind == stability::KIND).count() {
+        0 => String::new(),
+        1 => "; states without symmetry, which leave at one point, are not followed".to_owned(),
+        n => format!("; states without symmetry, which leave at {n} points, are not followed"),
     }
 }
 

@@ -96,9 +96,8 @@ fn crosses(a: f64, b: f64) -> bool {
     a * b < 0.0 || (b == 0.0 && a != 0.0)
 }
 
-/// A parameter's part of the tangent, relative to its range, below which the branch is vertical. The
-/// tangent comes from the last iterate, whose parameter is right to 1e-9 of the range or so.
-const VERTICAL: f64 = 1e-8;
+/// A parameter's part of the tangent, relative to its range, below which the branch is vertical.
+const VERTICAL: f64 = 1e-9;
 /// Mismatch of a Hermite cubic above which the function is not resolved.
 const MAX_MISMATCH: f64 = 0.35;
 /// Changes smaller than this fraction of an observable's magnitude are not looked into.

@@ -86,11 +86,17 @@ pub(crate) fn locate<P: Problem>(
     let (best, _) = search.best();
     if evaluated != Some(best) {
         interpolate(a, b, h, bend, best, x);
-        core.correct(Constraint::Plane(a, best), x, Precision::Event)?;
+        correction = core.correct(Constraint::Plane(a, best), x, Precision::Event)?.last;
     }
+    Ok(Located { at: best, error: error_at(&search, correction) })
+}
+
+/// The estimated error of the best end of a bracket, whose state the last correction moved by
+/// `correction`.
+pub(super) fn error_at(search: &Search, correction: f64) -> f64 {
+    let (best, _) = search.best();
     // the secant's own error is a small part of what it says
-    let error = 1.25 * search.error().max(correction).max(f64::EPSILON * (1.0 + best));
-    Ok(Located { at: best, error })
+    1.25 * search.error().max(correction).max(f64::EPSILON * (1.0 + best))
 }
 
 /// Where the Hermite cubic of the parameter takes a value.

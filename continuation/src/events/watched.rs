@@ -4,7 +4,7 @@
 //! values at its ends do not: those of a continuous function approach each other.
 
 use super::detect::Candidate;
-use super::locate::{Located, MAX_EVALUATIONS, bend, interpolate};
+use super::locate::{Located, MAX_EVALUATIONS, bend, error_at, interpolate};
 use super::root::Search;
 use crate::problem::Problem;
 use crate::step::{Constraint, Core, Precision, Refusal, State};
@@ -80,7 +80,7 @@ pub(crate) fn locate_watched<P: Problem>(
         }
         _ => shrinks,
     };
-    let error = search.error().max(correction).max(f64::EPSILON * (1.0 + best));
+    let error = error_at(&search, correction);
     Ok(found.then_some(Located { at: best, error }))
 }
 

@@ -47,6 +47,10 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// A tangent along which the residual changes by this many times what the parameter changes is steep.
 const STEEP: f64 = 1e2;
 
+/// The parameter's part of the tangent, in its scale, below which tangent and counts are those of the
+/// state, not of the iterate before it.
+const STANDS_STILL: f64 = 1e-6;
+
 /// The problem, its matrices and all work space of the tracer.
 pub(crate) struct Core<'a, P: Problem> {
     pub(crate) problem: &'a P,
@@ -232,11 +236,23 @@ impl<'a, P: Problem> Core<'a, P> {
             self.border(Constraint::Plane(base, 0.0));
             self.facts = Some(self.bordered.factor(&mut self.jacobian));
         }
+        self.solve_tangent(x);
+        self.normalise(x)?;
+        if x.tp.abs() < STANDS_STILL * self.weights.parameter {
+            // the last correction may be all there is of the parameter: factors of the state itself
+            self.assemble(&x.u, x.p).map_err(Refusal::Evaluation)?;
+            self.facts = Some(self.bordered.factor(&mut self.jacobian));
+            self.solve_tangent(x);
+        }
+        self.complete(x)
+    }
+
+    /// The tangent from the latest factors, of any length.
+    fn solve_tangent(&mut self, x: &mut State) {
         x.tu.fill(0.0);
         let mut g = [1.0];
         self.bordered.solve(&mut self.jacobian, &mut x.tu, &mut g);
         x.tp = g[0];
-        self.complete(x)
     }
 
     /// Everything at `x` that follows from its tangent, which need not be normalised yet.
@@ -334,10 +350,7 @@ impl<'a, P: Problem> Core<'a, P> {
         let base = x.clone();
         self.border(Constraint::Plane(&base, 0.0));
         self.facts = Some(self.bordered.factor(&mut self.jacobian));
-        x.tu.fill(0.0);
-        let mut g = [1.0];
-        self.bordered.solve(&mut self.jacobian, &mut x.tu, &mut g);
-        x.tp = g[0];
+        self.solve_tangent(x);
         self.complete(x)
     }
 

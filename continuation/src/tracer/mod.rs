@@ -44,6 +44,7 @@ use switching::Departure;
 
 /// Part of the separation on a curve of special points below which two of them meet.
 const MEETING: f64 = 1e-3;
+
 /// Distance from a bound, in scales of the parameter, that is rounding.
 const ON_BOUND: f64 = 1e-14;
 
@@ -399,8 +400,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         false
     }
 
-    /// Whether the whole step lies on a bound of the domain, to rounding: a branch that tends to it
-    /// would be followed along differences that are rounding.
+    /// Whether the whole step lies on a bound of the domain, to rounding: the branch tends to it.
     fn runs_along_bound(&self) -> bool {
         let Some((lo, hi)) = self.settings.domain else { return false };
         let near = ON_BOUND * self.core.weights.parameter;
