@@ -156,7 +156,7 @@ impl<A: Matrix> Matrix for Arrow<A> {
         true
     }
 
-    /// Through a [`Dense`] copy; `None` above [`MAX_SPECTRUM`] unknowns.
+    /// Through a [`Dense`] copy, up to 100 unknowns; `None` beyond.
     fn spectrum(&self, mass: Option<&Self>) -> Option<Vec<(f64, f64)>> {
         if self.dim() > MAX_SPECTRUM {
             return None;
