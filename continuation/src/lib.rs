@@ -20,6 +20,7 @@ mod residual_problem;
 pub mod samples;
 mod settings;
 mod singular;
+mod sound;
 mod step;
 pub mod tracer;
 
@@ -38,5 +39,6 @@ pub use newton::{NewtonError, NewtonReport, NewtonSettings, newton};
 pub use problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints, Stability};
 pub use residual_problem::{BandProblem, DenseProblem, ResidualProblem, SparseProblem};
 pub use settings::{Counting, Settings, SettingsError};
+pub use sound::ProblemError;
 pub use step::Refusal;
 pub use tracer::{Progress, TraceError, Tracer, both_ways};

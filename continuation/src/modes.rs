@@ -8,7 +8,7 @@
 //! zero with a large imaginary part can be missed.
 
 use crate::linalg::{Arnoldi, Dense, EigenSettings, Lanczos, Matrix, Spectrum};
-use crate::problem::{EvalError, Problem, Stability, check_finite};
+use crate::problem::{EvalError, Problem, Stability, check_finite, check_pattern};
 use crate::settings::Counting;
 
 /// The most unstable eigenvalues of a state, with their modes.
@@ -54,6 +54,7 @@ pub fn modes<P: Problem>(
     if problem.stability() == Stability::SeparateHessian {
         problem.energy_hessian(u, p, &mut jacobian)?;
     }
+    check_pattern(&jacobian)?;
     let floor = f64::EPSILON * jacobian.norm();
     let facts = jacobian.factor(floor);
     let mut solver = ModeSolver::new(problem, count);
@@ -63,6 +64,8 @@ pub fn modes<P: Problem>(
     Ok(Modes { values, vectors, certified })
 }
 
+/// Eigenvalues beyond this multiple of `|J| / |M|` belong to fast modes.
+const FAST: f64 = 1e7;
 /// Dimension up to which all eigenvalues of any matrix are computed, as of a dense one: some
 /// 10 ms a point.
 const SMALL: usize = 120;
@@ -72,9 +75,10 @@ const FULL: usize = crate::linalg::MAX_SPECTRUM;
 /// Solves after which the search for a few eigenvalues ends with what it has.
 const MOST_SOLVES: usize = 200;
 
-/// A real part that counts as zero: rounding of a well-conditioned eigenvalue.
-pub(crate) fn zero(values: &[(f64, f64)]) -> f64 {
-    let largest = values.iter().fold(0.0, |m: f64, (re, im)| m.max(re.hypot(*im)));
+/// A real part that counts as zero: rounding of a well-conditioned eigenvalue, of whose likes none is
+/// larger than `slow`.
+pub(crate) fn zero(values: &[(f64, f64)], slow: f64) -> f64 {
+    let largest = values.iter().fold(0.0, |m: f64, (re, im)| m.max(re.hypot(*im))).min(slow);
     4.0 * values.len() as f64 * f64::EPSILON * largest
 }
 
@@ -83,8 +87,8 @@ pub(crate) fn zero(values: &[(f64, f64)]) -> f64 {
 const RESOLVED: f64 = 1e4;
 
 /// Whether the number of unstable eigenvalues is certain.
-pub(crate) fn has_certain_signs(spectrum: &Spectrum) -> bool {
-    spectrum.has_certain_signs(RESOLVED * zero(&spectrum.values))
+pub(crate) fn has_certain_signs(spectrum: &Spectrum, slow: f64) -> bool {
+    spectrum.has_certain_signs(RESOLVED * zero(&spectrum.values, slow))
 }
 
 fn dense<A: Matrix>(a: &A) -> Dense {
@@ -169,6 +173,13 @@ impl<P: Problem> ModeSolver<P> {
         })
     }
 
+    /// Eigenvalues beyond this are those of fast modes, beside which the others keep their digits; only
+    /// a mass matrix makes them.
+    pub(crate) fn slow(&self, jacobian: &P::Jacobian) -> f64 {
+        let by_mass = |mass: &P::Jacobian| FAST * jacobian.norm() / mass.norm();
+        self.mass.as_ref().map_or(f64::INFINITY, by_mass)
+    }
+
     /// The most unstable eigenvalues to `values`, most unstable first; whether that is certain.
     pub(crate) fn solve(
         &mut self,
@@ -185,7 +196,8 @@ impl<P: Problem> ModeSolver<P> {
             return self.symmetric(problem, jacobian, negative, positive, values);
         }
         let spectrum = self.spectrum(jacobian);
-        let certain = spectrum.as_ref().is_some_and(has_certain_signs);
+        let slow = self.slow(jacobian);
+        let certain = spectrum.as_ref().is_some_and(|s| has_certain_signs(s, slow));
         let spectrum = match spectrum {
             Some(plain) => self.weighted(problem, jacobian).unwrap_or(plain.values),
             None => self.few(problem, jacobian, self.wanted),

@@ -6,12 +6,16 @@
 //! transformation of `f`. Full steps near a solution converge quadratically.
 
 use crate::linalg::{Matrix, max_abs};
-use crate::problem::{EvalError, ParamId, Problem};
+use crate::problem::{EvalError, ParamId, Problem, check_pattern};
+use crate::sound::{ProblemError, check_lengths, check_sizes};
 
 /// Why Newton's method gave no solution.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NewtonError {
+    /// The problem is malformed, or a vector has the wrong length.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
     /// The starting state is outside the model's domain, or the Jacobian has no value at a state on
     /// the way.
     #[error("the problem has no value at the starting state: {0}")]
@@ -69,7 +73,7 @@ pub struct NewtonReport {
 }
 
 /// Solves `f(u, p) = 0` for `u`, starting from its given value. `u` has length [`Problem::dim`], `p`
-/// holds the values of all parameters; neither length is checked.
+/// holds the values of all parameters.
 ///
 /// ```
 /// use continuation::{DenseProblem, newton};
@@ -88,6 +92,8 @@ pub fn newton<P: Problem>(
     p: &[f64],
     settings: &NewtonSettings,
 ) -> Result<NewtonReport, NewtonError> {
+    check_sizes(problem)?;
+    check_lengths(problem, u, p)?;
     let n = problem.dim();
     let mut jacobian = problem.new_jacobian();
     let (mut r, mut du) = (vec![0.0; n], vec![0.0; n]);
@@ -104,6 +110,7 @@ pub fn newton<P: Problem>(
             _ => NewtonError::Stuck { iterations, correction: last, cause: Some(error) },
         };
         problem.linearise(u, p, &mut r, &mut jacobian).map_err(refuse)?;
+        check_pattern(&jacobian).map_err(refuse)?;
         crate::problem::check_finite(&r).map_err(refuse)?;
         let floor = f64::EPSILON * jacobian.norm();
         let facts = jacobian.factor(floor);

@@ -1,7 +1,7 @@
 //! What a user writes: residual, Jacobian, parameter derivative, and what stability means.
 
 use crate::branch::EventKind;
-use crate::linalg::Matrix;
+use crate::linalg::{Matrix, OutsidePattern};
 
 /// A parameter of a problem.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +39,9 @@ pub enum EvalError {
         /// Index of the offending component.
         at: usize,
     },
+    /// The assembly of a matrix wrote an entry outside its pattern.
+    #[error(transparent)]
+    OutsidePattern(#[from] OutsidePattern),
 }
 
 /// What the eigenvalues of the Jacobian say about stability.
@@ -291,6 +294,11 @@ pub struct Others {
     pub certified: bool,
     /// The eigenvalues, (real, imaginary) parts, as far as they are known.
     pub values: Vec<(f64, f64)>,
+}
+
+/// An entry that an assembly wrote outside the matrix's pattern, as an error.
+pub(crate) fn check_pattern<A: Matrix>(a: &A) -> Result<(), EvalError> {
+    a.misplaced().map_or(Ok(()), |entry| Err(entry.into()))
 }
 
 /// The first component that is not finite, as an error.

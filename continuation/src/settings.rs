@@ -49,7 +49,8 @@ pub enum Counting {
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
     /// The trace ends the first time the parameter takes this value after leaving its start; met
-    /// exactly, as the last point, which is no event.
+    /// exactly, as the last point, which is no event. A target at the start is met at once, by a trace
+    /// of one point, unless [`Settings::increasing`] says which way it is to be left first.
     pub target: Option<f64>,
     /// The trace ends where the parameter meets a bound of this interval, of which one may be infinite, with
     /// the start inside; met exactly, as the last point.

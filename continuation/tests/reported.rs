@@ -312,9 +312,16 @@ fn starts_at_or_beside_a_fold() {
             } else {
                 known.retain(|fold| *fold < u);
             }
-            // a fold that is the start itself, to the accuracy to which it can be solved there
-            if u.abs() < 1e-6 && folds.len() != known.len() {
+            // a fold that is the start itself, to the accuracy to which it can be solved there, is the
+            // branch's first special point
+            if branch.points[0].event.is_some() {
                 known.retain(|fold| *fold != 0.0);
+                known.insert(0, 0.0);
+            } else {
+                assert!(u != 0.0);
+                if u.abs() < 1e-6 && folds.len() != known.len() {
+                    known.retain(|fold| *fold != 0.0);
+                }
             }
             assert_eq!(folds.len(), known.len(), "{u} {increasing}: {folds:?} {known:?}");
             for (fold, known) in folds.iter().zip(&known) {

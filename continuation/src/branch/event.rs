@@ -13,6 +13,9 @@ pub enum EventKind {
     BranchPoint,
     /// A pair of complex eigenvalues crosses the imaginary axis.
     Hopf,
+    /// A real eigenvalue passes infinity: the equations without a derivative can no longer be solved for
+    /// their unknowns (singularity-induced bifurcation).
+    SingularityInduced,
     /// A mode becomes unstable, or stable, where the Jacobian is regular
     /// ([`crate::Stability::SeparateHessian`]).
     StabilityChange,
@@ -46,6 +49,7 @@ impl fmt::Display for EventKind {
             EventKind::Fold => write!(f, "fold"),
             EventKind::BranchPoint => write!(f, "branch-point"),
             EventKind::Hopf => write!(f, "hopf"),
+            EventKind::SingularityInduced => write!(f, "singularity-induced"),
             EventKind::StabilityChange => write!(f, "stability-change"),
             EventKind::Cusp => write!(f, "cusp"),
             EventKind::BogdanovTakens => write!(f, "bogdanov-takens"),

@@ -479,7 +479,7 @@ impl<P: Problem> SpecialPoints for FoldCurve<'_, P> {
         let Some(spectrum) = self.modes.spectrum(&work.jacobian) else {
             return Ok(Others::default());
         };
-        let certified = has_certain_signs(&spectrum);
+        let certified = has_certain_signs(&spectrum, f64::INFINITY);
         let mut values = spectrum.values;
         let size = |v: &(f64, f64)| v.0.hypot(v.1);
         let critical =

@@ -453,7 +453,7 @@ impl<P: Problem> SpecialPoints for HopfCurve<'_, P> {
         let work = &mut *self.work.borrow_mut();
         self.bring(work, x, p, Level::Null)?;
         let all = self.modes.spectrum(&work.jacobian);
-        let certified = all.as_ref().is_some_and(has_certain_signs);
+        let certified = all.as_ref().is_some_and(|s| has_certain_signs(s, f64::INFINITY));
         let mut values = all.map(|all| all.values).unwrap_or_else(|| {
             let floor = f64::EPSILON * work.jacobian.norm();
             work.jacobian.factor(floor);

@@ -14,6 +14,8 @@ pub(crate) enum Candidate {
     BranchPoint { kernel: usize },
     /// The real part of a complex pair of eigenvalues changes sign.
     Hopf,
+    /// A real eigenvalue passes infinity.
+    Infinite,
     /// The number of unstable modes passes this level where the Jacobian is regular.
     Stability { level: f64 },
     /// On a curve of special points, a real eigenvalue beside the critical ones passes zero.
@@ -44,6 +46,7 @@ impl Candidate {
             Candidate::Fold => x.tp,
             Candidate::Hopf => x.pair,
             Candidate::RealEigenvalue => x.real,
+            Candidate::Infinite => x.far,
             Candidate::Stability { level } => x.unstable.map_or(f64::NAN, |n| n as f64 - level),
             Candidate::BranchPoint { .. } => f64::from(x.orientation * orientation),
             Candidate::Value { observable, level, .. } => x.values[observable] - level,
@@ -268,6 +271,7 @@ impl Detector {
                 | Candidate::BranchPoint { .. }
                 | Candidate::Hopf
                 | Candidate::RealEigenvalue
+                | Candidate::Infinite
                 | Candidate::Stability { .. } => false,
             };
             if hit {
@@ -306,6 +310,11 @@ impl Detector {
             return self.detect_uncertain(a, b, fold, flip, final_say);
         };
         let change = before.abs_diff(after);
+        // the count changes, no determinant vanishes: through infinity, where its reciprocal is small
+        if a.pairs == b.pairs && change == 1 && !flip && !fold && crosses(a.far, b.far) {
+            self.found.push(Candidate::Infinite);
+            return Ok(());
+        }
         // a pair that meets on the real axis on the way may have crossed the imaginary one
         // first, hidden by a fold
         if change > 0 && a.pairs != b.pairs && !final_say {

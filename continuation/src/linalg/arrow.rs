@@ -1,7 +1,7 @@
 //! A matrix with a few full rows and columns.
 
 use super::vector::{add_scaled, dot, max_abs};
-use super::{Bordered, Dense, Facts, Matrix, Spectrum};
+use super::{Bordered, Dense, Facts, Matrix, OutsidePattern, Spectrum};
 
 /// Largest dimension of which an [`Arrow`] computes the full spectrum.
 const MAX_SPECTRUM: usize = 100;
@@ -12,6 +12,23 @@ const MAX_SPECTRUM: usize = 100;
 /// The full rows never enter the factorisation of the core; a [`Bordered`] solver eliminates them.
 /// An arrow is a [`Matrix`] itself and may be the core of another [`Bordered`] solver or arrow,
 /// also where it is singular. Its core may be singular as often as there are borders to cure it.
+///
+/// What is conserved, or free, makes a Jacobian singular everywhere. One more equation fixes it, and a
+/// multiplier that vanishes at every solution keeps the matrix square:
+///
+/// ```
+/// use continuation::linalg::{Arrow, Dense, Matrix};
+/// // A ⇌ B: the rows of the core cancel, the total u₁ + u₂ is fixed by the full row
+/// let mut j = Arrow::new(Dense::new(2), 1);
+/// for (row, rate) in [(0, -1.0), (1, 1.0)] {
+///     j.core_mut().set(row, 0, rate);
+///     j.core_mut().set(row, 1, -rate);
+/// }
+/// j.column_mut(0).fill(1.0); // the multiplier in both equations: along what is conserved
+/// j.row_mut(0).fill(1.0); // the total
+/// let facts = j.factor(f64::EPSILON * j.norm());
+/// assert_eq!((facts.perturbed, facts.det_sign), (0, Some(1)));
+/// ```
 ///
 /// If the borders are symmetric, `B = C` and `D = Dᵀ` to the bit, and the core reports its
 /// inertia, so does the arrow. A constraint adds one negative eigenvalue that is no instability.
@@ -107,6 +124,10 @@ impl<A: Matrix> Matrix for Arrow<A> {
     fn set_zero(&mut self) {
         self.core.set_zero();
         self.borders.entries_mut().into_iter().for_each(|part| part.fill(0.0));
+    }
+
+    fn misplaced(&self) -> Option<OutsidePattern> {
+        self.core.misplaced()
     }
 
     fn mul(&self, x: &[f64], y: &mut [f64]) {

@@ -1,7 +1,7 @@
 //! General band matrix, LU with partial pivoting.
 
 use super::vector::{add_scaled, dot, max_abs, pivot_or_floor, sign, solve_refined};
-use super::{Facts, Matrix, SymmetricBand, SymmetricPart};
+use super::{Facts, Matrix, OutsidePattern, SymmetricBand, SymmetricPart};
 
 /// Difference of mirrored entries, relative to the largest one, that is rounding of their assembly.
 const SYMMETRIC: f64 = 4.0 * f64::EPSILON;
@@ -27,6 +27,7 @@ pub struct Band {
     refine: bool,
     /// The symmetric part, if it was asked for.
     symmetric: Option<Box<SymmetricBand>>,
+    misplaced: Option<OutsidePattern>,
 }
 
 impl Band {
@@ -45,6 +46,7 @@ impl Band {
             norm: 0.0,
             refine: false,
             symmetric: None,
+            misplaced: None,
         }
     }
 
@@ -53,27 +55,41 @@ impl Band {
         (self.kl, self.ku)
     }
 
+    fn has(&self, i: usize, j: usize) -> bool {
+        i < self.n && j < self.n && i <= j + self.kl && j <= i + self.ku
+    }
+
+    /// Of an entry in the band.
     fn index(&self, i: usize, j: usize) -> usize {
-        debug_assert!(i < self.n && j < self.n, "({i}, {j}) outside the matrix");
-        debug_assert!(i <= j + self.kl && j <= i + self.ku, "({i}, {j}) outside the band");
         j * (self.kl + self.ku + 1) + self.ku + i - j
     }
 
-    /// Sets entry `(i, j)`, which must lie in the band.
-    pub fn set(&mut self, i: usize, j: usize, value: f64) {
-        let at = self.index(i, j);
-        self.entries[at] = value;
+    fn entry(&mut self, row: usize, column: usize) -> Option<&mut f64> {
+        if !self.has(row, column) {
+            self.misplaced = self.misplaced.or(Some(OutsidePattern { row, column }));
+            return None;
+        }
+        let at = self.index(row, column);
+        self.entries.get_mut(at)
     }
 
-    /// Adds to entry `(i, j)`, which must lie in the band.
+    /// Sets entry `(i, j)`. One outside the band is not written, and [`Matrix::misplaced`] then.
+    pub fn set(&mut self, i: usize, j: usize, value: f64) {
+        if let Some(entry) = self.entry(i, j) {
+            *entry = value;
+        }
+    }
+
+    /// Adds to entry `(i, j)`. One outside the band is not written, and [`Matrix::misplaced`] then.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
-        let at = self.index(i, j);
-        self.entries[at] += value;
+        if let Some(entry) = self.entry(i, j) {
+            *entry += value;
+        }
     }
 
     /// Entry `(i, j)`; zero outside the band.
     pub fn get(&self, i: usize, j: usize) -> f64 {
-        if i <= j + self.kl && j <= i + self.ku { self.entries[self.index(i, j)] } else { 0.0 }
+        if self.has(i, j) { self.entries[self.index(i, j)] } else { 0.0 }
     }
 
     /// Rows `first..last` of column `j` that are in the band.
@@ -170,6 +186,11 @@ impl Matrix for Band {
 
     fn set_zero(&mut self) {
         self.entries.fill(0.0);
+        self.misplaced = None;
+    }
+
+    fn misplaced(&self) -> Option<OutsidePattern> {
+        self.misplaced
     }
 
     fn mul(&self, x: &[f64], y: &mut [f64]) {

@@ -1,7 +1,7 @@
 //! Bordered systems by mixed block elimination.
 
 use super::vector::{ROUNDING, add_scaled, dot, dot_magnitude, max_abs, pivot_or_floor, sign};
-use super::{Facts, Matrix};
+use super::{Dense, Facts, Matrix};
 
 /// Floor of the core's pivots relative to `|b| |c|`; for a core that is exactly zero (the scalar
 /// cusp at its fold) it is `ε` instead.
@@ -23,6 +23,10 @@ const CURE: f64 = 1e4;
 /// sign of the solutions is that of the factors.
 const NOISE: f64 = 64.0;
 
+/// Largest dimension, borders included, up to which the sign of a determinant that the Schur
+/// complements do not tell is that of a dense copy: milliseconds.
+const MAX_DENSE: usize = 200;
+
 /// What the factorisation of a bordered matrix learned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BorderedFacts {
@@ -31,9 +35,9 @@ pub struct BorderedFacts {
     /// Schur complement of the last border, `d − cᵀA⁻¹b` for a single one; 1 without borders.
     pub schur: f64,
     /// Sign of the determinant of the whole bordered matrix; right also where the core is
-    /// singular. `None` if the bordered matrix is singular to rounding, if the core does not know
-    /// the sign of its factors, or if the core is singular more than once: the solutions are
-    /// accurate then, but the signs of the single Schur complements are rounding.
+    /// singular. `None` if the bordered matrix is singular to rounding; beyond 200 unknowns also if
+    /// the core does not know the sign of its factors, or if it is singular more than once: the
+    /// solutions are accurate then, but the signs of the single Schur complements are rounding.
     pub det_sign: Option<i8>,
     /// Numbers of (negative, positive) eigenvalues of the whole matrix, if it is symmetric and the
     /// core reports its own; `None` also where the sign of the determinant is unknown.
@@ -66,6 +70,11 @@ pub struct Bordered {
     residual: Vec<f64>,
     trial: Vec<f64>,
     core_norm: f64,
+    /// Copy with which to solve where the Schur complements say nothing, the scales of its last rows and
+    /// columns, and whether it is regular.
+    dense: Option<Box<Dense>>,
+    dense_scales: [Vec<f64>; 2],
+    dense_solves: bool,
 }
 
 impl Bordered {
@@ -86,6 +95,9 @@ impl Bordered {
             residual: vec![0.0; n + m],
             trial: vec![0.0; n + m],
             core_norm: 0.0,
+            dense: None,
+            dense_scales: [vec![1.0; m], vec![1.0; m]],
+            dense_solves: false,
         }
     }
 
@@ -126,13 +138,69 @@ impl Bordered {
         if last_replaced {
             (facts.det_sign, facts.inertia) = (None, None);
         }
+        facts.det_sign = facts.det_sign.or_else(|| self.dense_sign(a));
         facts
+    }
+
+    /// Sign of the determinant of a small matrix from a dense copy, rows and columns of the borders
+    /// scaled as the core; `None` if that is singular to rounding.
+    fn dense_sign<A: Matrix>(&mut self, a: &A) -> Option<i8> {
+        let (n, size) = (self.n, self.n + self.m);
+        if size > MAX_DENSE || self.m == 0 {
+            return None;
+        }
+        let mut copy = self.dense.take().unwrap_or_else(|| Box::new(Dense::new(size)));
+        copy.set_zero();
+        let unit = if self.core_norm > 0.0 { self.core_norm } else { 1.0 };
+        let scale = |x: &[f64]| Some(max_abs(x)).filter(|m| *m > 0.0).map_or(1.0, |m| unit / m);
+        self.trial[..n].fill(0.0);
+        for j in 0..n {
+            self.trial[j] = 1.0;
+            a.mul(&self.trial[..n], &mut copy.column_mut(j)[..n]);
+            self.trial[j] = 0.0;
+        }
+        for k in 0..self.m {
+            let (by_column, by_row) = (scale(self.column(k)), scale(self.row(k)));
+            (self.dense_scales[0][k], self.dense_scales[1][k]) = (by_row, by_column);
+            for i in 0..n {
+                copy.set(i, n + k, by_column * self.column(k)[i]);
+                copy.set(n + k, i, by_row * self.row(k)[i]);
+            }
+            for i in 0..self.m {
+                let scaled = scale(self.row(i)) * by_column;
+                copy.set(n + i, n + k, scaled * self.corner(i, k, false));
+            }
+        }
+        let floor = 16.0 * size as f64 * f64::EPSILON * copy.norm();
+        let facts = copy.factor(floor);
+        self.dense = Some(copy);
+        self.dense_solves = facts.perturbed == 0;
+        facts.det_sign.filter(|_| self.dense_solves)
+    }
+
+    /// Solves with the dense copy.
+    fn solve_dense(&mut self, f: &mut [f64], g: &mut [f64], transposed: bool) {
+        let Some(copy) = &mut self.dense else { return };
+        let [rows, columns] = &self.dense_scales;
+        let (before, after) = if transposed { (columns, rows) } else { (rows, columns) };
+        let (x, y) = self.trial.split_at_mut(self.n);
+        x.copy_from_slice(f);
+        y.iter_mut().zip(&*g).zip(before).for_each(|((y, g), scale)| *y = scale * g);
+        if transposed {
+            copy.solve_transpose(&mut self.trial);
+        } else {
+            copy.solve(&mut self.trial);
+        }
+        let (x, y) = self.trial.split_at(self.n);
+        f.copy_from_slice(x);
+        g.iter_mut().zip(y).zip(after).for_each(|((g, y), scale)| *g = scale * y);
     }
 
     /// Factors for use as a core: the facts are those of the factors, also where the last Schur
     /// complement vanishes. `floor` is that of a core which is zero, as are its borders.
     pub(super) fn factor_as_core<A: Matrix>(&mut self, a: &mut A, floor: f64) -> Facts {
-        let (facts, _) = self.factor_parts(a, floor, NOISE);
+        let (mut facts, _) = self.factor_parts(a, floor, NOISE);
+        let known = facts.det_sign.is_some();
         let mut cured = 0;
         for k in 0..self.m {
             let borders = max_abs(self.column(k)) * max_abs(self.row(k));
@@ -147,6 +215,11 @@ impl Bordered {
                 *other = *delta;
                 perturbed = perturbed.max(1);
             }
+        }
+        if !known {
+            // a regular matrix all the same, if the copy says so
+            facts.det_sign = self.dense_sign(a);
+            perturbed = if facts.det_sign.is_some() { 0 } else { perturbed };
         }
         Facts {
             det_sign: facts.det_sign,
@@ -164,6 +237,7 @@ impl Bordered {
         last_noise: f64,
     ) -> (BorderedFacts, bool) {
         let (n, m) = (self.n, self.m);
+        self.dense_solves = false;
         self.core_norm = a.norm();
         let mut floor = f64::EPSILON * self.core_norm;
         for k in 0..m {
@@ -394,6 +468,9 @@ impl Bordered {
         transposed: bool,
         refine: bool,
     ) {
+        if self.dense_solves {
+            return self.solve_dense(f, g, transposed);
+        }
         let n = self.n;
         let mut rhs = std::mem::take(&mut self.rhs);
         let mut z = std::mem::take(&mut self.trial);

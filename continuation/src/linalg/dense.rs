@@ -1,21 +1,17 @@
 //! Dense matrix, LU with partial pivoting, full spectrum.
 
-use faer::linalg::solvers::Solve;
-use faer::{Mat, Scale, Side};
+use faer::{Mat, Side};
 
-use super::spectrum::{Spectrum, balance, deficiency, with_errors};
+use super::pencil::{finite_eigenvalues, finite_spectrum};
+use super::spectrum::{Spectrum, balance, with_errors};
 use super::vector::{add_scaled, dot, max_abs, pivot_or_floor, sign, solve_refined};
-use super::{Facts, Matrix};
+use super::{Facts, Matrix, OutsidePattern};
 
 /// Largest dimension of which [`Dense`] computes the full spectrum (seconds above it).
 pub const MAX_SPECTRUM: usize = 600;
 
-/// An eigenvalue beyond this multiple of `|A| / |M|` is an infinite one, moved by rounding: those
-/// of a differential-algebraic system of index two appear at about `ε^(-1/2)`.
-const INFINITE: f64 = 1e7;
-
-/// Shifts of a pencil, in units of `|A| / |M|`: irregular numbers, some on either side.
-const SHIFTS: [f64; 4] = [0.739, -0.618, 0.213, -0.171];
+/// Square roots of masses that differ by more than this belong to fast and slow modes.
+const GRADED: f64 = 1e-4;
 
 /// A dense matrix, stored by columns; meant for at most a few hundred unknowns.
 ///
@@ -34,6 +30,7 @@ pub struct Dense {
     residual: Vec<f64>,
     norm: f64,
     refine: bool,
+    misplaced: Option<OutsidePattern>,
 }
 
 impl Dense {
@@ -49,12 +46,16 @@ impl Dense {
             residual: vec![0.0; n],
             norm: 0.0,
             refine: false,
+            misplaced: None,
         }
     }
 
-    /// Sets entry `(i, j)`.
-    pub fn set(&mut self, i: usize, j: usize, value: f64) {
-        self.entries[i + j * self.n] = value;
+    fn entry(&mut self, row: usize, column: usize) -> Option<&mut f64> {
+        if row >= self.n || column >= self.n {
+            self.misplaced = self.misplaced.or(Some(OutsidePattern { row, column }));
+            return None;
+        }
+        self.entries.get_mut(row + column * self.n)
     }
 
     /// The eigenvalues of symmetric matrices, with a mass matrix that is positive definite by a margin;
@@ -73,9 +74,18 @@ impl Dense {
         Some(reduced.self_adjoint_eigenvalues(Side::Lower).ok().map(real))
     }
 
-    /// Adds to entry `(i, j)`.
+    /// Sets entry `(i, j)`. One outside the matrix is not written, and [`Matrix::misplaced`] then.
+    pub fn set(&mut self, i: usize, j: usize, value: f64) {
+        if let Some(entry) = self.entry(i, j) {
+            *entry = value;
+        }
+    }
+
+    /// Adds to entry `(i, j)`. One outside the matrix is not written, and [`Matrix::misplaced`] then.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
-        self.entries[i + j * self.n] += value;
+        if let Some(entry) = self.entry(i, j) {
+            *entry += value;
+        }
     }
 
     /// Entry `(i, j)`.
@@ -181,6 +191,11 @@ impl Matrix for Dense {
 
     fn set_zero(&mut self) {
         self.entries.fill(0.0);
+        self.misplaced = None;
+    }
+
+    fn misplaced(&self) -> Option<OutsidePattern> {
+        self.misplaced
     }
 
     fn mul(&self, x: &[f64], y: &mut [f64]) {
@@ -273,9 +288,9 @@ impl Matrix for Dense {
     /// `None` above [`MAX_SPECTRUM`] unknowns. Symmetric matrices have exactly real eigenvalues,
     /// with a mass matrix if that is positive definite to rounding. Allocates.
     ///
-    /// Otherwise the pencil is shifted and inverted; eigenvalues beyond 1e7 `|A| / |M|` count as
-    /// infinite, which leaves out those of differential-algebraic systems up to index two. `None`
-    /// also where the pencil is singular for every `λ`.
+    /// Otherwise the kernel of the mass matrix is deflated, which leaves out the infinite eigenvalues of
+    /// differential-algebraic systems of any index, and no others: how many there are follows from
+    /// ranks, not from the size of eigenvalues. `None` also where the pencil is singular for every `λ`.
     fn spectrum(&self, mass: Option<&Self>) -> Option<Vec<(f64, f64)>> {
         if self.n > MAX_SPECTRUM {
             return None;
@@ -289,10 +304,7 @@ impl Matrix for Dense {
             let values = a.eigenvalues().ok()?;
             return Some(values.iter().map(|z| (z.re, z.im)).collect());
         };
-        let (inverse, shift, unit) = inverted(&a, &mass.to_faer()?, self.norm(), mass.norm())?;
-        let values = inverse.eigenvalues().ok()?;
-        let finite = values.iter().filter(|z| is_finite((z.re, z.im), unit));
-        Some(finite.map(|z| from_inverse((z.re, z.im), shift)).collect())
+        finite_eigenvalues(a, mass.to_faer()?)
     }
 
     fn spectrum_with_errors(&self, mass: Option<&Self>) -> Option<Spectrum> {
@@ -306,18 +318,7 @@ impl Matrix for Dense {
         }
         let a = self.to_faer()?;
         let Some(mass) = mass else { return with_errors(a) };
-        let m = mass.to_faer()?;
-        let (inverse, shift, unit) = inverted(&a, &m, self.norm(), mass.norm())?;
-        let found = with_errors(inverse)?;
-        let all = found.values.iter().zip(&found.errors);
-        let finite = all.filter(|(z, _)| is_finite(**z, unit));
-        // an error of the inverse moves the eigenvalue by that of its square
-        let moved = |((re, im), error): (&(f64, f64), &f64)| {
-            (from_inverse((*re, *im), shift), error / (re * re + im * im))
-        };
-        let (values, errors): (Vec<_>, Vec<_>) = finite.map(moved).unzip();
-        let complete = self.n - values.len() == deficiency(&m);
-        Some(Spectrum { values, errors, complete })
+        finite_spectrum(a, mass.to_faer()?)
     }
 
     fn complex(&self, imaginary: &Self) -> Option<Self> {
@@ -339,6 +340,17 @@ impl Matrix for Dense {
 /// `L⁻¹ A L⁻ᵀ` with `M = L Lᵀ`; `None` if `M` is not positive definite by a margin.
 fn reduce(a: &Mat<f64>, m: &Mat<f64>) -> Option<Mat<f64>> {
     let n = a.nrows();
+    // powers of two, so that nothing is rounded: masses of different units
+    let scales: Vec<f64> = (0..n).map(|i| (-0.5 * m[(i, i)].log2()).round().exp2()).collect();
+    if !scales.iter().all(|s| s.is_finite() && *s > 0.0) {
+        return None;
+    }
+    let widest = scales.iter().fold(0.0, |m: f64, s| m.max(*s));
+    if scales.iter().any(|s| *s < GRADED * widest) {
+        return None; // a symmetric solver would lose the slow modes in the rounding of the fast ones
+    }
+    let scaled = |x: &Mat<f64>| Mat::from_fn(n, n, |i, j| scales[i] * x[(i, j)] * scales[j]);
+    let (a, m) = (scaled(a), scaled(m));
     let llt = m.llt(Side::Lower).ok()?;
     let l = llt.L();
     let pivots = (0..n).map(|i| l[(i, i)] * l[(i, i)]);
@@ -353,42 +365,4 @@ fn reduce(a: &Mat<f64>, m: &Mat<f64>) -> Option<Mat<f64>> {
         c = c.transpose().to_owned();
     }
     Some(Mat::from_fn(n, n, |i, j| 0.5 * (c[(i, j)] + c[(j, i)])))
-}
-
-/// `(A − σM)⁻¹M`, whose eigenvalues `1/(λ − σ)` are those of `A x = λ M x`, with `σ` and the unit
-/// `|A| / |M|`.
-///
-/// Not faer's QZ: version 0.24 returns wrong conjugates, and NaN from some size on. The error is of the
-/// same order, `ε |A| / |M|` times the condition of the eigenvalue, as long as `A − σM` is well
-/// conditioned for one of the shifts tried; all are of the size `|A| / |M|`.
-fn inverted(a: &Mat<f64>, m: &Mat<f64>, a_norm: f64, m_norm: f64) -> Option<(Mat<f64>, f64, f64)> {
-    let n = a.nrows();
-    if m_norm == 0.0 {
-        return Some((Mat::zeros(n, n), 0.0, 1.0));
-    }
-    let unit = if a_norm > 0.0 { a_norm / m_norm } else { 1.0 };
-    let mut best = None;
-    let mut best_ratio = 10.0 * f64::EPSILON; // below it the pencil is singular
-    for shift in SHIFTS.map(|s| s * unit) {
-        let lu = (a - m * Scale(shift)).full_piv_lu();
-        let pivots = (0..n).map(|i| lu.U()[(i, i)].abs());
-        let (least, largest) =
-            pivots.fold((f64::INFINITY, 0.0), |(l, g): (f64, f64), d| (l.min(d), g.max(d)));
-        if least > best_ratio * largest {
-            best_ratio = least / largest;
-            best = Some((shift, lu));
-        }
-    }
-    let (shift, lu) = best?;
-    Some((lu.solve(m), shift, unit))
-}
-
-/// Whether `1/(λ − σ)` belongs to a finite eigenvalue.
-fn is_finite((re, im): (f64, f64), unit: f64) -> bool {
-    re.hypot(im) * unit * INFINITE >= 1.0
-}
-
-fn from_inverse((re, im): (f64, f64), shift: f64) -> (f64, f64) {
-    let square = re * re + im * im;
-    (shift + re / square, -im / square)
 }

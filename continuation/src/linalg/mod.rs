@@ -33,6 +33,7 @@ mod eigen;
 mod krylov;
 mod lanczos;
 mod ldlt;
+mod pencil;
 mod scalar;
 mod small_symmetric;
 mod sparse;
@@ -111,6 +112,12 @@ pub trait Matrix: Clone + Send {
     fn solve(&mut self, x: &mut [f64]);
     /// Solves `Aᵀ x = b` in place with the latest factors.
     fn solve_transpose(&mut self, x: &mut [f64]);
+    /// The first entry since [`Matrix::set_zero`] that was to be written outside the pattern, where the
+    /// type does not refuse it at once; it is not written, and an assembly with one is an error
+    /// ([`crate::EvalError::OutsidePattern`]). `None` by default.
+    fn misplaced(&self) -> Option<OutsidePattern> {
+        None
+    }
     /// `A += a I`, true; false (the default) where the type does not do that.
     fn add_identity(&mut self, a: f64) -> bool {
         let _ = a;

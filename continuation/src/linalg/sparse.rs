@@ -51,9 +51,9 @@ struct Pattern {
     diagonal: Vec<usize>,
 }
 
-/// An entry that is not in the pattern of a [`Sparse`] matrix.
+/// An entry that is not in the pattern of a matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("entry ({row}, {column}) is not in the pattern of the sparse matrix")]
+#[error("entry ({row}, {column}) is not in the pattern of the matrix")]
 pub struct OutsidePattern {
     /// Its row.
     pub row: usize,

@@ -1,7 +1,7 @@
 //! Symmetric band matrix plus a rank-one term, `B + c v vᵀ`, factored with inertia.
 
 use super::vector::{add_scaled, dot, dot_magnitude, max_abs, pivot_or_floor, sign, solve_refined};
-use super::{Band, Facts, Matrix, ldlt};
+use super::{Band, Facts, Matrix, OutsidePattern, ldlt};
 
 /// Growth of the unpivoted elimination above which its factors are not used.
 ///
@@ -52,6 +52,7 @@ pub struct SymmetricBand {
     residual: Vec<f64>,
     band_norm: f64,
     refine: bool,
+    misplaced: Option<OutsidePattern>,
 }
 
 /// Which factors of the band the solves use.
@@ -90,6 +91,7 @@ impl SymmetricBand {
             residual: vec![0.0; n],
             band_norm: 0.0,
             refine: false,
+            misplaced: None,
         }
     }
 
@@ -98,10 +100,14 @@ impl SymmetricBand {
         self.kd
     }
 
-    /// Adds `value` to entry `(i, j)` of the band, `j <= i <= j + kd`, and to its mirror image.
+    /// Adds `value` to entry `(i, j)` of the band, `j <= i <= j + kd`, and to its mirror image. One
+    /// outside this lower half is not written, and [`Matrix::misplaced`] then.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
-        debug_assert!(i < self.n && j <= i && i <= j + self.kd, "({i}, {j}) not in the lower band");
-        self.entries[j * (self.kd + 1) + i - j] += value;
+        if i < self.n && j <= i && i <= j + self.kd {
+            self.entries[j * (self.kd + 1) + i - j] += value;
+        } else {
+            self.misplaced = self.misplaced.or(Some(OutsidePattern { row: i, column: j }));
+        }
     }
 
     /// Entries `(j, j), (j + 1, j), …` of the band, to be filled: `kd + 1` of them, fewer in the
@@ -289,6 +295,11 @@ impl Matrix for SymmetricBand {
     fn set_zero(&mut self) {
         self.entries.fill(0.0);
         self.c = 0.0;
+        self.misplaced = None;
+    }
+
+    fn misplaced(&self) -> Option<OutsidePattern> {
+        self.misplaced
     }
 
     fn mul(&self, x: &[f64], y: &mut [f64]) {

@@ -6,6 +6,7 @@
 //! explains was a jump, and the step must be shorter.
 
 mod defect;
+mod deficient;
 mod fold;
 mod forms;
 mod hopf;
@@ -15,12 +16,15 @@ mod plateau;
 mod probe;
 mod roots;
 mod small;
+mod start;
 
 pub(crate) use defect::Defect;
+pub(crate) use deficient::deficient_everywhere;
 pub(crate) use fold::fold_form;
 pub(crate) use hopf::{locate_hopf, lyapunov_coefficient};
 pub(crate) use kernel::{arbitrary, find};
 pub(crate) use probe::{Extended, Probe};
+pub(crate) use start::{Begun, SAME_PARAMETER, branch_point_at};
 
 use crate::branch::Crossing;
 use crate::events::{bend, interpolate};

@@ -5,7 +5,7 @@
 //! the second to about 1e-8, of what the nonlinearity does over its natural amplitude.
 
 use crate::linalg::Matrix;
-use crate::problem::{EvalError, ParamId, Problem, check_finite};
+use crate::problem::{EvalError, ParamId, Problem, check_finite, check_pattern};
 use crate::step::{Weights, dot};
 use serde::{Deserialize, Serialize};
 
@@ -98,6 +98,7 @@ impl<'a, P: Problem> Probe<'a, P> {
         self.p[self.which.0] = z.p;
         self.assemblies += 1;
         self.problem.linearise(&z.u, &self.p, &mut self.residual, &mut self.jacobian)?;
+        check_pattern(&self.jacobian)?;
         let column = &mut self.by_parameter;
         self.problem.parameter_derivative(&z.u, &self.p, self.which, column)?;
         check_finite(&self.residual)?;

@@ -8,8 +8,8 @@
 use super::stability::StabilityCount;
 use super::{Refusal, State, Weights};
 use crate::branch::Statistics;
-use crate::linalg::{Bordered, BorderedFacts, max_abs};
-use crate::problem::{EvalError, ParamId, Problem, check_finite};
+use crate::linalg::{Bordered, BorderedFacts, Matrix, max_abs};
+use crate::problem::{EvalError, ParamId, Problem, check_finite, check_pattern};
 use crate::settings::Settings;
 use crate::singular::{Extended, Probe, arbitrary};
 
@@ -50,6 +50,11 @@ const STEEP: f64 = 1e2;
 /// The parameter's part of the tangent, in its scale, below which tangent and counts are those of the
 /// state, not of the iterate before it.
 const STANDS_STILL: f64 = 1e-6;
+/// Growth of a solution, relative to its right-hand side row by row, above which a matrix deserves a
+/// closer look.
+const NEARLY_SINGULAR: f64 = 1e8;
+/// A row smaller than this part of the largest counts as that: it may be zero.
+const ROW: f64 = 1e-4;
 
 /// The problem, its matrices and all work space of the tracer.
 pub(crate) struct Core<'a, P: Problem> {
@@ -122,6 +127,7 @@ impl<'a, P: Problem> Core<'a, P> {
         self.p[self.which.0] = p;
         self.statistics.newton_iterations += 1;
         self.problem.linearise(u, &self.p, &mut self.r, &mut self.jacobian)?;
+        check_pattern(&self.jacobian)?;
         let column = self.bordered.column_mut(0);
         self.problem.parameter_derivative(u, &self.p, self.which, column)?;
         check_finite(&self.r)?;
@@ -384,6 +390,23 @@ impl<'a, P: Problem> Core<'a, P> {
         Weights { unknowns: unknowns.unwrap_or(1.0), parameter: range }
     }
 
+    /// Weights where nothing is known of a tangent.
+    pub(crate) fn weigh_without_tangent(&mut self, x: &State, range: f64) {
+        self.problem.metric(&x.u, &mut self.mdu);
+        let size = super::dot(&self.mdu, &x.u).max(0.0).sqrt();
+        let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
+        self.weights = match self.problem.unknown_scale(self.which) {
+            Some(scale) => Weights { unknowns: scale, parameter: scale },
+            None => Weights { unknowns: size, parameter: range },
+        };
+    }
+
+    /// Weights of a start whose tangent is known, and its tangent in them.
+    pub(crate) fn weigh_anew(&mut self, x: &mut State, range: f64) -> Result<(), Refusal> {
+        self.weights = self.weigh(x, range);
+        self.normalise(x)
+    }
+
     /// How far the unknowns move along the tangent while the parameter passes its range, but not so
     /// far that the residual changes much more on that way than the parameter changes it: beside a
     /// fold, where the tangent is steep, the branch bends long before.
@@ -417,6 +440,41 @@ impl<'a, P: Problem> Core<'a, P> {
         let Some(curve) = self.problem.special_points() else { return Ok(None) };
         self.p[self.which.0] = x.p;
         curve.separation(&x.u, &self.p).map_err(Refusal::Evaluation)
+    }
+
+    /// Whether the matrix bordered by the tangent of the latest start is singular to rounding, or so
+    /// nearly that it may be.
+    pub(crate) fn is_nearly_singular(&mut self) -> bool {
+        let n = self.du.len();
+        let Weights { unknowns, parameter } = self.weights;
+        // the size of each row, for unknowns and parameter in units of their scales
+        let mut sizes = vec![0.0_f64; n];
+        for seed in 31..33 {
+            for (i, d) in self.du.iter_mut().enumerate() {
+                *d = arbitrary(seed, i);
+            }
+            self.problem.metric(&self.du, &mut self.mdu);
+            let norm = super::dot(&self.mdu, &self.du).max(0.0).sqrt();
+            let length = if norm > 0.0 { unknowns / norm } else { 1.0 };
+            self.du.iter_mut().for_each(|d| *d *= length);
+            self.jacobian.mul(&self.du, &mut self.mdu);
+            let dp = parameter * arbitrary(seed, n);
+            for ((s, y), f) in sizes.iter_mut().zip(&self.mdu).zip(self.bordered.column(0)) {
+                *s = s.max((y + dp * f).abs());
+            }
+        }
+        let largest = max_abs(&sizes);
+        if largest == 0.0 {
+            return true;
+        }
+        for (i, (d, s)) in self.du.iter_mut().zip(&sizes).enumerate() {
+            *d = s.max(ROW * largest) * arbitrary(33, i);
+        }
+        let mut g = [0.0];
+        self.bordered.solve(&mut self.jacobian, &mut self.du, &mut g);
+        self.problem.metric(&self.du, &mut self.mdu);
+        let size = self.weights.norm(&self.mdu, &self.du, g[0]);
+        size.is_nan() || size > NEARLY_SINGULAR
     }
 
     /// What the count of unstable modes remembers of the latest state.

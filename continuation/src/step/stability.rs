@@ -76,12 +76,12 @@ impl<P: Problem> StabilityCount<P> {
         (x.unstable, x.count, x.certified) = (None, None, false);
         (x.pair, x.frequency, x.pairs) = (f64::NAN, f64::NAN, 0);
         (x.unstable_pairs, x.critical) = (0, false);
-        x.real = f64::NAN;
+        (x.real, x.far) = (f64::NAN, f64::NAN);
         x.eigenvalues.clear();
         if let Some(curve) = problem.special_points() {
             p[which.0] = x.p;
             if let Ok(others) = curve.others(&x.u, p) {
-                self.read(&others.values, false, x);
+                self.read(&others.values, (false, f64::INFINITY), x);
                 (x.count, x.unstable) = (others.unstable, others.unstable);
                 x.certified = others.certified;
                 self.solver.pick(others.values, &mut x.eigenvalues);
@@ -109,15 +109,16 @@ impl<P: Problem> StabilityCount<P> {
                 self.solver.pick(few, &mut x.eigenvalues);
             }
         } else if let Some(spectrum) = self.solver.spectrum(jacobian) {
-            self.read(&spectrum.values, energy, x);
-            x.certified = has_certain_signs(&spectrum);
+            let slow = self.solver.slow(jacobian);
+            self.read(&spectrum.values, (energy, slow), x);
+            x.certified = has_certain_signs(&spectrum, slow);
             let reported = self.solver.weighted(problem, jacobian).unwrap_or(spectrum.values);
             self.solver.pick(reported, &mut x.eigenvalues);
         } else if self.sense != Stability::None {
             // more than twice as many as were unstable last, so that the unstable ones are among them
             let count = FEW.max(2 * self.last + FEW / 2).min(MOST).max(self.wanted);
             let few = self.solver.few(problem, jacobian, count);
-            self.read(&few, energy, x);
+            self.read(&few, (energy, f64::INFINITY), x);
             self.last = x.count.unwrap_or(0);
             self.solver.pick(few, &mut x.eigenvalues);
         }
@@ -137,9 +138,10 @@ impl<P: Problem> StabilityCount<P> {
         decided.then_some(if energy { part.negative } else { part.positive })
     }
 
-    /// Counts in a spectrum, or in a part of it.
-    fn read(&self, spectrum: &[(f64, f64)], energy: bool, x: &mut State) {
-        let zero = zero(spectrum);
+    /// Counts in a spectrum, or in a part of it. Eigenvalues larger than `slow` say nothing of the
+    /// rounding errors of the others.
+    fn read(&self, spectrum: &[(f64, f64)], (energy, slow): (bool, f64), x: &mut State) {
+        let zero = zero(spectrum, slow);
         let sign = if energy { -1.0 } else { 1.0 };
         x.count = Some(spectrum.iter().filter(|(re, _)| sign * re > zero).count());
         x.critical = spectrum.iter().any(|(re, _)| re.abs() <= zero);
@@ -147,6 +149,8 @@ impl<P: Problem> StabilityCount<P> {
             return;
         }
         let real = spectrum.iter().filter(|(_, im)| *im == 0.0).map(|(re, _)| *re);
+        let farthest = real.clone().max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        x.far = farthest.map_or(0.0, f64::recip);
         x.real = real.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(f64::NAN);
         let pairs = spectrum.iter().filter(|(_, im)| *im > 0.0);
         x.pairs = pairs.clone().count();

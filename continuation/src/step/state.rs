@@ -39,6 +39,10 @@ pub(crate) struct State {
     pub(crate) critical: bool,
     /// Real eigenvalue nearest to zero; NaN without one, or where the spectrum is not known.
     pub(crate) real: f64,
+    /// Reciprocal of the real eigenvalue farthest from zero, 0 where there is none: passes zero where
+    /// an eigenvalue passes infinity. NaN where the spectrum is not known.
+    #[serde(default)]
+    pub(crate) far: f64,
     /// Number of complex pairs, where the spectrum is known.
     pub(crate) pairs: usize,
     /// Observables.
@@ -64,6 +68,7 @@ impl State {
             pair: f64::NAN,
             frequency: f64::NAN,
             real: f64::NAN,
+            far: f64::NAN,
             pairs: 0,
             unstable_pairs: 0,
             critical: false,
@@ -90,6 +95,7 @@ impl State {
         self.pair = other.pair;
         self.frequency = other.frequency;
         self.real = other.real;
+        self.far = other.far;
         self.pairs = other.pairs;
         self.unstable_pairs = other.unstable_pairs;
         self.critical = other.critical;

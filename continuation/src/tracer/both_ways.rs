@@ -82,7 +82,17 @@ pub fn both_ways<P: Problem>(
 }
 
 /// One branch of two that begin at the same point: the first one reversed, then the second.
-fn join(mut back: Branch, ahead: Branch) -> Branch {
+fn join(mut back: Branch, mut ahead: Branch) -> Branch {
+    // a special point at the start is found by both halves
+    if ahead.points.first().is_some_and(|point| point.event.is_some())
+        && back.points.first().is_some_and(|point| point.event.is_some())
+    {
+        ahead.events.remove(0);
+        ahead.points[0].event = None;
+        for point in &mut ahead.points {
+            point.event = point.event.map(|event| event - 1);
+        }
+    }
     reverse(&mut back);
     let (points, events) = (back.points.len(), back.events.len());
     let length = back.points.last().map_or(0.0, |point| point.s);

@@ -1,9 +1,12 @@
 //! What a trace is told, and why it could not begin.
 
 use crate::newton::NewtonError;
-use crate::problem::{Parameter, Problem};
+use crate::problem::{ParamId, Parameter, Problem};
 use crate::settings::{Settings, SettingsError};
+use crate::singular::{Extended, Probe, deficient_everywhere};
+use crate::sound::ProblemError;
 use crate::step::Refusal;
+use crate::step::{Weights, dot};
 
 /// Why a trace could not begin; [`crate::guide::troubleshooting`] says what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -46,6 +49,20 @@ pub enum TraceError {
         /// Where.
         at: usize,
     },
+    /// The problem itself is malformed.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    /// The Jacobian is singular at the start and at every solution near it: the solutions are no
+    /// branch.
+    #[error(
+        "the Jacobian is singular along the whole branch (rank deficiency {deficiency}): a conserved \
+         quantity, a symmetry that moves solutions, or an equation twice? Add what fixes it as an \
+         equation (`linalg::Arrow` shows how)"
+    )]
+    SingularEverywhere {
+        /// By how much the rank of the Jacobian, with the parameter's column, is short.
+        deficiency: usize,
+    },
     /// No solution at the start.
     #[error("no solution at the start: {0}")]
     Start(NewtonError),
@@ -83,6 +100,37 @@ pub(super) fn range(settings: &Settings, start: f64, parameter: &Parameter) -> f
         (_, Some((_, hi))) if hi.is_finite() && hi != start => (hi - start).abs(),
         _ => parameter.scale.abs().max(f64::MIN_POSITIVE),
     }
+}
+
+/// Whether the target is where the trace begins: at once reached, unless it is to be left first.
+pub(super) fn begins_at_target(settings: &Settings, start: f64) -> bool {
+    let rounding = |t: f64| 4.0 * f64::EPSILON * t.abs().max(start.abs());
+    let there = settings.target.is_some_and(|t| (t - start).abs() <= rounding(t));
+    there && settings.increasing.is_none()
+}
+
+/// The error of a start beside which the Jacobian is singular at every solution; `None` if it is not,
+/// or if nothing can be said.
+pub(super) fn singular_everywhere<P: Problem>(
+    problem: &P,
+    which: ParamId,
+    u: &[f64],
+    p: &[f64],
+    range: f64,
+    domain: Option<(f64, f64)>,
+) -> Option<TraceError> {
+    let mut mu = vec![0.0; u.len()];
+    problem.metric(u, &mut mu);
+    let size = dot(&mu, u).max(0.0).sqrt();
+    let scale = problem.unknown_scale(which);
+    let weights = Weights {
+        unknowns: scale.unwrap_or(if size > 0.0 && size.is_finite() { size } else { 1.0 }),
+        parameter: scale.unwrap_or(range),
+    };
+    let mut probe = Probe::new(problem, which, p, weights);
+    let z = Extended { u: u.to_vec(), p: p[which.0] };
+    let deficiency = deficient_everywhere(&mut probe, &z, domain)?;
+    Some(TraceError::SingularEverywhere { deficiency })
 }
 
 /// Whether the parameter increases at first.

@@ -15,9 +15,11 @@
 //! # Ok::<(), continuation::TraceError>(())
 //! ```
 
+mod begin;
 mod both_ways;
 mod closure;
 mod input;
+mod narrow;
 mod restart;
 mod snapshot;
 mod special;
@@ -33,10 +35,12 @@ use crate::events::{Beside, Detector, Watch};
 use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem, Stability};
 use crate::settings::{Settings, SettingsError};
+use crate::singular::branch_point_at;
+use crate::sound::{check_sizes, examine};
 use crate::step::{
     Constraint, Core, Precision, Refusal, State, StepSize, Weights, curve_scale, judge,
 };
-use input::{check, increases, range, unknown_observable};
+use input::{begins_at_target, check, increases, range, singular_everywhere, unknown_observable};
 use special::Special;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -47,6 +51,9 @@ const MEETING: f64 = 1e-3;
 
 /// Distance from a bound, in scales of the parameter, that is rounding.
 const ON_BOUND: f64 = 1e-14;
+
+/// Number of unknowns up to which the rank of every start is looked at: that costs next to nothing.
+const SMALL: usize = 60;
 
 /// Traces one branch; yields its points in order, special points included, the start first.
 ///
@@ -122,6 +129,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         settings: Settings,
     ) -> Result<Self, TraceError> {
         settings.validate()?;
+        check_sizes(problem)?;
         let n = problem.dim();
         let parameters = problem.parameters();
         let Some(which) = parameters.iter().position(|q| q.name == parameter) else {
@@ -130,31 +138,57 @@ impl<'a, P: Problem> Tracer<'a, P> {
         };
         check("the starting state", u, n)?;
         check("the parameter vector", p, parameters.len())?;
+        if let Some((lo, hi)) = settings.domain
+            && !(lo..=hi).contains(&p[which])
+        {
+            let allowed = "an interval that holds the start of the parameter";
+            let value = if p[which] < lo { lo } else { hi };
+            return Err(SettingsError { key: "domain", value, allowed }.into());
+        }
+        examine(problem, ParamId(which), u, p)?;
         let mut start = State::new(n, problem.observables().len());
         start.u.copy_from_slice(u);
         start.p = p[which];
-        let report = newton(problem, &mut start.u, p, &NewtonSettings::default())
-            .map_err(TraceError::Start)?;
-
         let mut range = range(&settings, start.p, &parameters[which]);
         let scaled = problem.special_points().is_some_and(|curve| curve.scale().is_some());
         if scaled && settings.target.is_none() {
             // how wide the domain is says nothing of the curve
             range = curve_scale(problem, ParamId(which), start.p);
         }
-        if let Some((lo, hi)) = settings.domain
-            && !(lo..=hi).contains(&start.p)
-        {
-            let allowed = "an interval that holds the start of the parameter";
-            let value = if start.p < lo { lo } else { hi };
-            return Err(SettingsError { key: "domain", value, allowed }.into());
-        }
+        let everywhere =
+            |u: &[f64]| singular_everywhere(problem, ParamId(which), u, p, range, settings.domain);
+        let report = newton(problem, &mut start.u, p, &NewtonSettings::default())
+            .map_err(|error| everywhere(u).unwrap_or(TraceError::Start(error)))?;
+        begin::settle(problem, u, &mut start.u, p);
+
         let increasing = increases(&settings, start.p);
         let unit = Weights { unknowns: 1.0, parameter: 1.0 };
         let mut core = Core::new(problem, ParamId(which), p, unit, &settings);
         core.statistics.newton_iterations += report.iterations;
-        core.start(&mut start, increasing, range).map_err(TraceError::Tangent)?;
-        Self::set_up(core, start, p, settings, range)
+        let begun = core.start(&mut start, increasing, range);
+        // one more solve tells whether it is worth a closer look
+        if (n <= SMALL || begun.is_err() || start.orientation == 0 || core.is_nearly_singular())
+            && let Some(error) = everywhere(&start.u)
+        {
+            return Err(error);
+        }
+        let mut crossing = None;
+        if begun.is_err() || start.orientation == 0 || core.is_nearly_singular() {
+            let before = (start.clone(), core.weights);
+            core.weigh_without_tangent(&start, range);
+            crossing = branch_point_at(&mut core, &mut start, increasing);
+            if crossing.is_some() {
+                core.weigh_anew(&mut start, range).map_err(TraceError::Tangent)?;
+            } else {
+                (start, core.weights) = before;
+            }
+        }
+        if crossing.is_none() {
+            begun.map_err(TraceError::Tangent)?;
+        }
+        let mut tracer = Self::set_up(core, start, p, settings, range)?;
+        tracer.begin_at_special_point(crossing);
+        Ok(tracer)
     }
 
     /// The tracer that stands at `start`.
@@ -200,6 +234,10 @@ impl<'a, P: Problem> Tracer<'a, P> {
         tracer.detector.learn(&tracer.start, &tracer.start);
         let first = tracer.point(&tracer.start, 0.0, None, tracer.start.unstable);
         tracer.queue.push_back(first);
+        if begins_at_target(&tracer.settings, tracer.start.p) {
+            let detail = "the target is where the trace begins".to_owned();
+            tracer.end(StopReason::Target, detail);
+        }
         if let Some((lo, hi)) = tracer.settings.domain {
             let (p, way) = (tracer.start.p, tracer.start.tp);
             if p == lo && way < 0.0 || p == hi && way > 0.0 {

@@ -4,7 +4,9 @@ use super::Tracer;
 use crate::branch::{Detail, Eigenvector, Event, EventKind, StopReason};
 use crate::events::{Candidate, Located, Role, locate, locate_watched};
 use crate::problem::Problem;
-use crate::singular::{Crossed, SEEDS, fold_form, locate_branch_points, locate_hopf};
+use crate::singular::{
+    Crossed, SAME_PARAMETER, SEEDS, fold_form, locate_branch_points, locate_hopf,
+};
 use crate::step::{Refusal, State};
 
 /// Part of the step to which a Hopf point is bracketed before Newton's method takes over.
@@ -14,9 +16,9 @@ const BRACKET: f64 = 1e-3;
 pub(super) struct Special {
     pub(super) candidate: Candidate,
     pub(super) place: Located,
-    detail: Detail,
-    eigenvectors: Vec<Eigenvector>,
-    state: State,
+    pub(super) detail: Detail,
+    pub(super) eigenvectors: Vec<Eigenvector>,
+    pub(super) state: State,
 }
 
 impl<P: Problem> Tracer<'_, P> {
@@ -72,16 +74,41 @@ impl<P: Problem> Tracer<'_, P> {
                 // tests of a curve of special points are continuous and know their noise
                 Candidate::Value { observable, .. } if self.is_test(observable) => {
                     located.push(self.locate_one(h, candidate)?);
+                    continue;
                 }
                 Candidate::Value { .. } | Candidate::Extremum { .. } => {
                     located.extend(self.locate_watched(h, candidate)?);
+                    continue;
                 }
-                _ => located.push(self.locate_one(h, candidate)?),
+                _ => {}
+            }
+            // at a special point the parameter's value cannot be solved for, and need not be
+            let special = match *candidate {
+                Candidate::Parameter { value, role } if role != Role::Landing => {
+                    self.end_at(&located, *candidate, value)
+                }
+                _ => None,
+            };
+            let special = match special {
+                Some(end) => end,
+                None => self.locate_one(h, candidate)?,
+            };
+            located.push(special);
+        }
+        // a fold at the end is the last value that the parameter takes: no crossing shows it
+        for (value, role) in self.ends() {
+            let candidate = Candidate::Parameter { value, role };
+            if !located.iter().any(|l| l.candidate == candidate)
+                && let Some(end) = self.end_at(&located, candidate, value)
+            {
+                located.push(end);
             }
         }
         // a value passed shortly before the fold is passed again behind it: one step for each
         let before = |l: &Special| {
-            l.candidate == Candidate::Fold && self.detector.passes_before(self.current.p, l.state.p)
+            l.candidate == Candidate::Fold
+                && self.detector.passes_before(self.current.p, l.state.p)
+                && !self.ends().any(|(value, _)| self.is_at(l, value))
         };
         if !final_say && located.iter().any(before) {
             return Err(Refusal::SeveralEvents);
@@ -93,6 +120,33 @@ impl<P: Problem> Tracer<'_, P> {
         Ok(located)
     }
 
+    /// The values of the parameter at which the trace ends.
+    fn ends(&self) -> impl Iterator<Item = (f64, Role)> + use<P> {
+        let target = self.settings.target.map(|value| (value, Role::Target));
+        let (lo, hi) = self.settings.domain.unzip();
+        let bounds = [lo, hi].into_iter().flatten().map(|value| (value, Role::Bound));
+        target.into_iter().chain(bounds)
+    }
+
+    /// Whether a special point of the Jacobian lies at this value of the parameter, to rounding.
+    fn is_at(&self, special: &Special, value: f64) -> bool {
+        let singular = matches!(
+            special.candidate,
+            Candidate::Fold | Candidate::BranchPoint { .. } | Candidate::Hopf
+        );
+        let scale = value.abs() + self.core.weights.parameter;
+        singular && value.is_finite() && (special.state.p - value).abs() <= SAME_PARAMETER * scale
+    }
+
+    /// The end of the trace at a special point that lies there.
+    fn end_at(&self, located: &[Special], candidate: Candidate, value: f64) -> Option<Special> {
+        let special = located.iter().find(|l| self.is_at(l, value))?;
+        let mut state = special.state.clone();
+        state.p = value;
+        let (place, detail, eigenvectors) = (special.place, Detail::None, Vec::new());
+        Some(Special { candidate, place, detail, eigenvectors, state })
+    }
+
     fn locate_crossings(
         &mut self,
         h: f64,
@@ -100,6 +154,13 @@ impl<P: Problem> Tracer<'_, P> {
         final_say: bool,
         located: &mut Vec<Special>,
     ) -> Result<(), Refusal> {
+        if kernel == 2
+            && final_say
+            && let Some(found) = self.narrow_hopf(h)
+        {
+            located.push(found);
+            return Ok(());
+        }
         let Self { core, current: a, trial: b, work, settings, .. } = self;
         let candidate = Candidate::BranchPoint { kernel };
         let special = |one: Crossed| Special {
@@ -218,6 +279,7 @@ impl<P: Problem> Tracer<'_, P> {
             Candidate::Fold
             | Candidate::BranchPoint { .. }
             | Candidate::Hopf
+            | Candidate::Infinite
             | Candidate::Stability { .. } => self.trial.unstable,
             _ if self.core.problem.special_points().is_some() => self.trial.unstable,
             _ => before,
@@ -245,7 +307,13 @@ impl<P: Problem> Tracer<'_, P> {
                 eigenvectors: eigenvectors.clone(),
             });
         }
-        self.queue.push_back(point);
+        // a special point where the trace ends is its last point
+        match self.queue.back_mut() {
+            Some(back) if candidate.ends_trace() && back.event.is_some() && back.s == s => {
+                back.p = point.p;
+            }
+            _ => self.queue.push_back(point),
+        }
         if candidate.ends_trace() {
             match candidate {
                 Candidate::Parameter { role: Role::Target, .. } => {
@@ -314,6 +382,7 @@ impl<P: Problem> Tracer<'_, P> {
             Candidate::Fold => Some(EventKind::Fold),
             Candidate::BranchPoint { .. } => Some(EventKind::BranchPoint),
             Candidate::Hopf => Some(EventKind::Hopf),
+            Candidate::Infinite => Some(EventKind::SingularityInduced),
             Candidate::Stability { .. } => Some(EventKind::StabilityChange),
             Candidate::RealEigenvalue => None,
             Candidate::Value { observable, level: 0.0, .. } => {
