@@ -53,6 +53,7 @@ impl<P: Problem> Tracer<'_, P> {
             let left = self.core.left_at_fold();
             let mut probe = self.core.probe();
             let form = fold_form(&mut probe, &start, &left).ok();
+            let (form, missed) = form.unzip();
             self.core.statistics.newton_iterations += probe.assemblies;
             let slope = start.tp / start.length;
             // p − p₀ = ½ p″ s² and dp/ds = p″ s
@@ -64,7 +65,7 @@ impl<P: Problem> Tracer<'_, P> {
             {
                 let (ahead, behind) = (self.beside(1.0), self.beside(-1.0));
                 self.start.tp = 0.0;
-                let error = off.abs() / start.length;
+                let error = off.abs() / start.length + missed.unwrap_or(0.0);
                 self.announce(EventKind::Fold, error, Detail::Fold(form), ahead, behind);
             }
             return;
