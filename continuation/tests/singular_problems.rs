@@ -4,8 +4,8 @@
 
 use continuation::linalg::{Arrow, Dense};
 use continuation::{
-    DenseProblem, EvalError, Matrix, ParamId, Parameter, Problem, Settings, Stability, StopReason,
-    TraceError, Tracer,
+    BandProblem, DenseProblem, EvalError, Matrix, ParamId, Parameter, Problem, Settings,
+    SparseProblem, Stability, StopReason, TraceError, Tracer,
 };
 use std::ops::ControlFlow;
 
@@ -198,4 +198,73 @@ fn a_target_at_the_start_is_met_at_once() {
         .run(&mut |_| ControlFlow::Continue(()));
     let end = branch.points.last().unwrap();
     assert!(branch.stopped.reason == StopReason::Target && (end.u[0] + 1.0).abs() < 1e-12);
+}
+
+/// Two species that turn into each other and diffuse between walls: the total is conserved, unless the
+/// first leaks out at the end.
+fn diffusion(n: usize, leak: f64) -> impl Fn(&[f64], &[f64], &mut [f64]) {
+    let stiff = (n as f64).powi(2);
+    move |u, p, r| {
+        for i in 0..n {
+            let flux = |s: usize| {
+                let left = if i > 0 { u[2 * i - 2 + s] - u[2 * i + s] } else { 0.0 };
+                let right = if i + 1 < n { u[2 * i + 2 + s] - u[2 * i + s] } else { 0.0 };
+                stiff * (left + right)
+            };
+            let reaction = p[0] * u[2 * i] - u[2 * i + 1] * u[2 * i + 1];
+            r[2 * i] = flux(0) - reaction;
+            r[2 * i + 1] = 0.1 * flux(1) + reaction;
+        }
+        r[0] -= leak * (u[0] - 1.0);
+    }
+}
+
+#[test]
+fn large_problems_in_every_storage() {
+    for n in [20_usize, 60, 200] {
+        let pattern: Vec<(usize, usize)> = (0..2 * n)
+            .flat_map(|i| (i.saturating_sub(2)..(i + 3).min(2 * n)).map(move |j| (i, j)))
+            .collect();
+        let start = vec![1.0; 2 * n];
+        for leak in [0.0, 1.0] {
+            let f = || diffusion(n, leak);
+            let band = BandProblem::from_residual(2 * n, (2, 2), &["p"], f());
+            let sparse = SparseProblem::from_residual(2 * n, &pattern, &["p"], f()).unwrap();
+            let dense = DenseProblem::from_residual(2 * n, &["p"], f());
+            let outcomes = [
+                outcome(&band, &start, 1.0, 1.5),
+                outcome(&sparse, &start, 1.0, 1.5),
+                outcome(&dense, &start, 1.0, 1.5),
+            ];
+            let right = match leak {
+                0.0 => Err(TraceError::SingularEverywhere { deficiency: 1 }),
+                _ => Ok(()),
+            };
+            assert!(outcomes.iter().all(|o| *o == right), "{n} {leak} {outcomes:?}");
+        }
+    }
+}
+
+/// `p⁴ u'''' + u'' = 0` with small steps: near its trivial solution nothing is singular, though the rows
+/// are up to 1e12 times as large as what they leave of a smooth state.
+#[test]
+fn stiff_operators_are_regular() {
+    for n in [30, 100, 400, 800] {
+        let h = std::f64::consts::PI / (n as f64 + 1.0);
+        let problem = BandProblem::from_residual(n, (2, 2), &["p"], move |u, p, r| {
+            let at = |i: isize| match i {
+                -1 => -u[0],
+                i if i == n as isize + 1 => -u[n - 1],
+                i => u.get((i - 1) as usize).copied().unwrap_or(0.0),
+            };
+            for (k, r) in r.iter_mut().enumerate() {
+                let i = k as isize + 1;
+                let second = at(i - 1) - 2.0 * at(i) + at(i + 1);
+                let fourth =
+                    at(i - 2) - 4.0 * at(i - 1) + 6.0 * at(i) - 4.0 * at(i + 1) + at(i + 2);
+                *r = p[0] * fourth / h.powi(4) + second / h.powi(2) + u[k].powi(3);
+            }
+        });
+        assert_eq!(outcome(&problem, &vec![0.0; n], 1.2, 0.7), Ok(()), "{n}");
+    }
 }

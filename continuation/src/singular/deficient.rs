@@ -16,9 +16,10 @@ use faer::Mat;
 
 /// Largest rank defect that is looked for.
 const MOST: usize = 6;
-/// What `[F_u F_p]` leaves of a kernel vector, relative to the terms of its rows: rounding, and the
-/// error of Jacobians by differences.
-const SMALL: f64 = 1e-11;
+/// What rounding leaves of a kernel vector's image under `[F_u F_p]`, relative to the terms of its rows.
+const SMALL: f64 = 64.0 * f64::EPSILON;
+/// What differences leave of it, in units of the error that they say they have.
+const MISSED: f64 = 4.0;
 /// Growth of a solution, relative to its right-hand side row by row, above which the bordered matrix
 /// is singular.
 const GROWTH: f64 = 1e10;
@@ -49,7 +50,7 @@ pub(crate) fn deficient_everywhere<P: Problem>(
         let mut frame = Frame::new(probe.dim(), k);
         let regular = begin(probe, &mut frame, z, k).ok()?;
         let Some(regular) = regular else { continue };
-        if !vanishes(probe, &mut frame, k) {
+        if !vanishes(probe, &mut frame, z, k) {
             return None;
         }
         if !regular {
@@ -135,7 +136,12 @@ fn row_sizes<P: Problem>(probe: &mut Probe<'_, P>) -> Vec<f64> {
 }
 
 /// Whether what the borders hold is the kernel to rounding.
-fn vanishes<P: Problem>(probe: &mut Probe<'_, P>, frame: &mut Frame, k: usize) -> bool {
+fn vanishes<P: Problem>(
+    probe: &mut Probe<'_, P>,
+    frame: &mut Frame,
+    at: &Extended,
+    k: usize,
+) -> bool {
     let rows = row_sizes(probe);
     let left: Vec<Vec<f64>> = (0..k).map(|j| frame.left(probe, j)).collect();
     (0..=k).all(|i| {
@@ -143,9 +149,12 @@ fn vanishes<P: Problem>(probe: &mut Probe<'_, P>, frame: &mut Frame, k: usize) -
         let norm = probe.norm(&v);
         v.scale(1.0 / norm);
         let y = product(probe, &v);
+        let Ok(missed) = probe.derivative_error(at, &v) else { return false };
+        let rest = rows.iter().zip(&missed).map(|(size, error)| SMALL * size + MISSED * error);
+        let rest: Vec<f64> = rest.collect();
         left.iter().all(|w| {
-            let terms: f64 = w.iter().zip(&rows).map(|(w, s)| (w * s).abs()).sum();
-            dot(w, &y).abs() <= SMALL * terms
+            let terms: f64 = w.iter().zip(&rest).map(|(w, s)| (w * s).abs()).sum();
+            dot(w, &y).abs() <= terms
         })
     })
 }
@@ -224,7 +233,7 @@ fn onto<P: Problem>(
     for _ in 0..2 {
         frame.renew(probe)?;
     }
-    Some(vanishes(probe, frame, k))
+    Some(vanishes(probe, frame, at, k))
 }
 
 /// `[F_u F_p]` with rows and columns of one size, as singular values and vectors.
@@ -234,11 +243,13 @@ struct Ranked {
     right: Mat<f64>,
     rows: Vec<f64>,
     columns: Vec<f64>,
+    /// How many singular values are rounding.
+    deficiency: usize,
 }
 
 impl Ranked {
-    /// At the assembled point.
-    fn of<P: Problem>(probe: &Probe<'_, P>) -> Option<Self> {
+    /// At the assembled point `at`.
+    fn of<P: Problem>(probe: &mut Probe<'_, P>, at: &Extended) -> Option<Self> {
         let n = probe.dim();
         let Weights { unknowns, parameter } = probe.weights;
         let mut columns: Vec<f64> = vec![unknowns; n];
@@ -267,12 +278,18 @@ impl Ranked {
         let svd = x.svd().ok()?;
         let s = svd.S().column_vector();
         let values = (0..n).map(|i| s[i]).collect();
-        Some(Ranked { left: svd.U().to_owned(), values, right: svd.V().to_owned(), rows, columns })
-    }
-
-    fn deficiency(&self) -> usize {
-        let largest = self.values.iter().fold(0.0, |m: f64, s| m.max(*s));
-        self.values.iter().filter(|s| **s <= SMALL * largest).count()
+        let (left, right) = (svd.U().to_owned(), svd.V().to_owned());
+        let mut ranked = Ranked { left, values, right, rows, columns, deficiency: 0 };
+        for j in (0..n).rev() {
+            let missed = probe.derivative_error(at, &ranked.vector(j)).ok()?;
+            let terms = (0..n).map(|i| (ranked.left[(i, j)] * ranked.rows[i] * missed[i]).abs());
+            let missed: f64 = terms.sum();
+            if ranked.values[j] > SMALL * n as f64 * ranked.values[0] + MISSED * missed {
+                break;
+            }
+            ranked.deficiency += 1;
+        }
+        Some(ranked)
     }
 
     /// Right singular vector `j`.
@@ -302,13 +319,13 @@ fn of_small<P: Problem>(
     domain: Option<(f64, f64)>,
 ) -> Option<usize> {
     probe.assemble(z).ok()?;
-    let k = Ranked::of(probe)?.deficiency();
+    let k = Ranked::of(probe, z)?.deficiency;
     if k == 0 {
         return None;
     }
     // the start need not be a solution
     let (at, ranked) = solve_small(probe, z.clone(), f64::INFINITY, k, domain)?;
-    if ranked.deficiency() < k {
+    if ranked.deficiency < k {
         return None;
     }
     let n = probe.dim();
@@ -324,7 +341,7 @@ fn of_small<P: Problem>(
             beside.add(1.0, &step);
             let far = 3.0 * probe.norm(&step);
             match solve_small(probe, beside, far, k, domain) {
-                Some((_, ranked)) if ranked.deficiency() < k => return None,
+                Some((_, ranked)) if ranked.deficiency < k => return None,
                 Some(_) => {
                     found += 1;
                     break;
@@ -351,7 +368,7 @@ fn solve_small<P: Problem>(
             return None;
         }
         probe.assemble(&at).ok()?;
-        let ranked = Ranked::of(probe)?;
+        let ranked = Ranked::of(probe, &at)?;
         if correction == CORRECTIONS || max_abs(&probe.residual) == 0.0 {
             return Some((at, ranked));
         }

@@ -444,7 +444,10 @@ impl<'a, P: Problem> Core<'a, P> {
 
     /// Whether the matrix bordered by the tangent of the latest start is singular to rounding, or so
     /// nearly that it may be.
-    pub(crate) fn is_nearly_singular(&mut self) -> bool {
+    ///
+    /// The size of a row is that of what it has to say a little way off: at a branch point of few
+    /// unknowns its derivatives are all rounding.
+    pub(crate) fn is_nearly_singular(&mut self, x: &State) -> bool {
         let n = self.du.len();
         let Weights { unknowns, parameter } = self.weights;
         // the size of each row, for unknowns and parameter in units of their scales
@@ -463,10 +466,23 @@ impl<'a, P: Problem> Core<'a, P> {
                 *s = s.max((y + dp * f).abs());
             }
         }
-        let largest = max_abs(&sizes);
-        if largest == 0.0 {
+        if max_abs(&sizes) == 0.0 {
             return true;
         }
+        let [here, there] = &mut self.shifted;
+        there.copy_from_slice(&x.u);
+        for (i, (place, u)) in there.iter_mut().zip(&x.u).enumerate() {
+            *place += 0.1 * (u.abs() + unknowns) * arbitrary(34, i);
+        }
+        self.p[self.which.0] = x.p;
+        let known = self.problem.residual(&x.u, &self.p, here).is_ok();
+        if known && self.problem.residual(there, &self.p, &mut self.mdu).is_ok() {
+            for ((s, a), b) in sizes.iter_mut().zip(&self.mdu).zip(&*here) {
+                let change = (a - b).abs();
+                *s = if change.is_finite() { s.max(change) } else { *s };
+            }
+        }
+        let largest = max_abs(&sizes);
         for (i, (d, s)) in self.du.iter_mut().zip(&sizes).enumerate() {
             *d = s.max(ROW * largest) * arbitrary(33, i);
         }

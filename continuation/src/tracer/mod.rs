@@ -167,13 +167,16 @@ impl<'a, P: Problem> Tracer<'a, P> {
         core.statistics.newton_iterations += report.iterations;
         let begun = core.start(&mut start, increasing, range);
         // one more solve tells whether it is worth a closer look
-        if (n <= SMALL || begun.is_err() || start.orientation == 0 || core.is_nearly_singular())
+        if (n <= SMALL
+            || begun.is_err()
+            || start.orientation == 0
+            || core.is_nearly_singular(&start))
             && let Some(error) = everywhere(&start.u)
         {
             return Err(error);
         }
         let mut crossing = None;
-        if begun.is_err() || start.orientation == 0 || core.is_nearly_singular() {
+        if begun.is_err() || start.orientation == 0 || core.is_nearly_singular(&start) {
             let before = (start.clone(), core.weights);
             core.weigh_without_tangent(&start, range);
             crossing = branch_point_at(&mut core, &mut start, increasing);
