@@ -22,6 +22,7 @@ mod settings;
 mod singular;
 mod sound;
 mod step;
+mod suspect;
 pub mod tracer;
 
 pub use branch::{
@@ -41,4 +42,5 @@ pub use residual_problem::{BandProblem, DenseProblem, ResidualProblem, SparsePro
 pub use settings::{Counting, Settings, SettingsError};
 pub use sound::ProblemError;
 pub use step::Refusal;
+pub use suspect::WrongDerivative;
 pub use tracer::{Progress, TraceError, Tracer, both_ways};

@@ -178,7 +178,10 @@ pub fn newton<P: Problem>(
 pub(crate) fn finite_rows<M: Matrix>(matrix: &M, scratch: &mut [f64]) -> Result<(), EvalError> {
     let ones = vec![1.0; scratch.len()];
     matrix.mul(&ones, scratch);
-    crate::problem::check_finite(scratch)
+    match scratch.iter().position(|x| !x.is_finite()) {
+        Some(row) => Err(EvalError::JacobianNotFinite { row }),
+        None => Ok(()),
+    }
 }
 
 /// Whether a residual is no more than the rounding errors of its terms.

@@ -39,6 +39,20 @@ pub enum EvalError {
         /// Index of the offending component.
         at: usize,
     },
+    /// The Jacobian holds NaN or infinity.
+    #[error("row {row} of the Jacobian is not finite")]
+    JacobianNotFinite {
+        /// The first such row.
+        row: usize,
+    },
+    /// The continued parameter would leave [`crate::Settings::domain`]; the problem was not asked.
+    #[error("the parameter would be {value:.6e}, beyond {bound:.6e}, a bound of the domain")]
+    OutsideDomain {
+        /// Its value.
+        value: f64,
+        /// The bound.
+        bound: f64,
+    },
     /// The assembly of a matrix wrote an entry outside its pattern.
     #[error(transparent)]
     OutsidePattern(#[from] OutsidePattern),

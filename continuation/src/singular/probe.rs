@@ -6,7 +6,7 @@
 
 use crate::linalg::Matrix;
 use crate::problem::{EvalError, ParamId, Problem, check_finite, check_pattern};
-use crate::step::{Weights, dot};
+use crate::step::{Guard, Weights, dot};
 use serde::{Deserialize, Serialize};
 
 /// A vector of unknowns and continued parameter.
@@ -50,6 +50,7 @@ pub(crate) struct Probe<'a, P: Problem> {
     pub(crate) problem: &'a P,
     pub(crate) which: ParamId,
     pub(crate) weights: Weights,
+    guard: Guard,
     pub(crate) jacobian: P::Jacobian,
     pub(crate) residual: Vec<f64>,
     pub(crate) by_parameter: Vec<f64>,
@@ -71,6 +72,7 @@ impl<'a, P: Problem> Probe<'a, P> {
             problem,
             which,
             weights,
+            guard: Guard::new(None),
             jacobian: problem.new_jacobian(),
             residual: vector(),
             by_parameter: vector(),
@@ -84,6 +86,11 @@ impl<'a, P: Problem> Probe<'a, P> {
         }
     }
 
+    /// Refuses points outside a domain; differences reach beyond it.
+    pub(crate) fn within(self, guard: Guard) -> Self {
+        Probe { guard, ..self }
+    }
+
     /// Replaces the values of all parameters.
     pub(crate) fn set_parameters(&mut self, p: &[f64]) {
         self.p.copy_from_slice(p);
@@ -95,7 +102,7 @@ impl<'a, P: Problem> Probe<'a, P> {
 
     /// Residual, Jacobian and parameter derivative at `z`.
     pub(crate) fn assemble(&mut self, z: &Extended) -> Result<(), EvalError> {
-        self.p[self.which.0] = z.p;
+        self.p[self.which.0] = self.guard.admit(z.p)?;
         self.assemblies += 1;
         self.problem.linearise(&z.u, &self.p, &mut self.residual, &mut self.jacobian)?;
         check_pattern(&self.jacobian)?;
@@ -141,6 +148,7 @@ impl<'a, P: Problem> Probe<'a, P> {
             *place = u + h * v;
         }
         self.p[self.which.0] = z.p + h * v.p;
+        self.guard.admits_difference(self.p[self.which.0])?;
         self.assemblies += 1;
         self.problem.jacobian(&self.place, &self.p, &mut self.shifted)?;
         self.problem.parameter_derivative(&self.place, &self.p, self.which, &mut self.slope)?;

@@ -6,12 +6,13 @@
 //! assembly that only confirms.
 
 use super::stability::StabilityCount;
-use super::{Refusal, State, Weights};
+use super::{Guard, Refusal, State, Weights};
 use crate::branch::Statistics;
 use crate::linalg::{Bordered, BorderedFacts, Matrix, max_abs};
 use crate::problem::{EvalError, ParamId, Problem, check_finite, check_pattern};
 use crate::settings::Settings;
 use crate::singular::{Extended, Probe, arbitrary};
+use crate::suspect::{WrongDerivative, wrong_derivative};
 
 /// The scalar equation that closes the system.
 #[derive(Clone, Copy)]
@@ -61,6 +62,7 @@ pub(crate) struct Core<'a, P: Problem> {
     pub(crate) problem: &'a P,
     pub(crate) which: ParamId,
     pub(crate) weights: Weights,
+    guard: Guard,
     pub(crate) statistics: Statistics,
     /// Which observables' slopes are wanted.
     pub(crate) wanted: Vec<bool>,
@@ -99,6 +101,7 @@ impl<'a, P: Problem> Core<'a, P> {
             problem,
             which,
             weights,
+            guard: Guard::new(settings.domain),
             statistics: Statistics::default(),
             wanted: vec![false; m],
             tolerance: settings.tolerance,
@@ -118,13 +121,13 @@ impl<'a, P: Problem> Core<'a, P> {
 
     /// Residual at a state, largest component.
     pub(crate) fn residual(&mut self, x: &State) -> Result<f64, EvalError> {
-        self.p[self.which.0] = x.p;
+        self.p[self.which.0] = self.guard.admit(x.p)?;
         self.problem.residual(&x.u, &self.p, &mut self.r)?;
         Ok(self.r.iter().fold(0.0, |m, v| m.max(v.abs())))
     }
 
     fn assemble(&mut self, u: &[f64], p: f64) -> Result<(), EvalError> {
-        self.p[self.which.0] = p;
+        self.p[self.which.0] = self.guard.admit(p)?;
         self.statistics.newton_iterations += 1;
         self.problem.linearise(u, &self.p, &mut self.r, &mut self.jacobian)?;
         check_pattern(&self.jacobian)?;
@@ -292,7 +295,7 @@ impl<'a, P: Problem> Core<'a, P> {
         if x.values.is_empty() {
             return Ok(());
         }
-        self.p[self.which.0] = x.p;
+        self.p[self.which.0] = self.guard.admit(x.p)?;
         self.problem.observe(&x.u, &self.p, &mut x.values)?;
         let mut differences = false;
         for k in (0..x.values.len()).filter(|&k| self.wanted[k]) {
@@ -309,7 +312,7 @@ impl<'a, P: Problem> Core<'a, P> {
             for i in 0..x.u.len() {
                 self.shifted[side][i] = x.u[i] + sign * h * x.tu[i];
             }
-            self.p[self.which.0] = x.p + sign * h * x.tp;
+            self.p[self.which.0] = self.guard.nearest(x.p + sign * h * x.tp);
             self.problem.observe(&self.shifted[side], &self.p, &mut self.observed[side])?;
         }
         for k in (0..x.values.len()).filter(|&k| self.wanted[k]) {
@@ -493,6 +496,13 @@ impl<'a, P: Problem> Core<'a, P> {
         size.is_nan() || size > NEARLY_SINGULAR
     }
 
+    /// The derivative that is not that of the residual at `x`, if there is one beyond doubt.
+    pub(crate) fn wrong_derivative(&mut self, x: &State) -> Option<WrongDerivative> {
+        self.p[self.which.0] = x.p;
+        let guard = self.guard;
+        wrong_derivative(self.problem, self.which, (&x.u, &self.p), guard, self.weights.unknowns)
+    }
+
     /// What the count of unstable modes remembers of the latest state.
     pub(crate) fn counted(&self) -> usize {
         self.stability.last
@@ -517,7 +527,7 @@ impl<'a, P: Problem> Core<'a, P> {
 
     /// For the analysis of a special point near by.
     pub(crate) fn probe(&self) -> Probe<'a, P> {
-        Probe::new(self.problem, self.which, &self.p, self.weights)
+        Probe::new(self.problem, self.which, &self.p, self.weights).within(self.guard)
     }
 
     /// Makes `x` the state at `z` with this tangent; its stability is not judged.

@@ -1,13 +1,15 @@
 //! One step along a branch: predict, correct, judge; accepted, or refused with a reason.
 
 mod corrector;
+mod guard;
 mod judge;
 mod size;
 mod stability;
 mod state;
 mod weights;
 
-pub(crate) use corrector::{Constraint, Core, Precision, curve_scale};
+pub(crate) use corrector::{Constraint, Core, Corrected, Precision, curve_scale};
+pub(crate) use guard::Guard;
 pub(crate) use judge::judge;
 pub(crate) use size::StepSize;
 pub(crate) use stability::hessian_inertia;

@@ -6,7 +6,8 @@ use crate::settings::{Settings, SettingsError};
 use crate::singular::{Extended, Probe, deficient_everywhere};
 use crate::sound::ProblemError;
 use crate::step::Refusal;
-use crate::step::{Weights, dot};
+use crate::step::{Guard, Weights, dot};
+use crate::suspect::{WrongDerivative, wrong_derivative};
 
 /// Why a trace could not begin; [`crate::guide::troubleshooting`] says what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -52,6 +53,9 @@ pub enum TraceError {
     /// The problem itself is malformed.
     #[error(transparent)]
     Problem(#[from] ProblemError),
+    /// Newton's method failed with a derivative that is not that of the residual.
+    #[error("no solution near the start, and {0}")]
+    WrongDerivative(WrongDerivative),
     /// The Jacobian is singular at the start and at every solution near it: the solutions are no
     /// branch.
     #[error(
@@ -131,6 +135,25 @@ pub(super) fn singular_everywhere<P: Problem>(
     let z = Extended { u: u.to_vec(), p: p[which.0] };
     let deficiency = deficient_everywhere(&mut probe, &z, domain)?;
     Some(TraceError::SingularEverywhere { deficiency })
+}
+
+/// Why there is no first point: what is wrong with the problem near the start, or Newton's own error.
+pub(super) fn no_start<P: Problem>(
+    problem: &P,
+    which: ParamId,
+    (u, p): (&[f64], &[f64]),
+    domain: Option<(f64, f64)>,
+    singular: Option<TraceError>,
+    error: NewtonError,
+) -> TraceError {
+    if let Some(singular) = singular {
+        return singular;
+    }
+    if matches!(error, NewtonError::Stuck { .. } | NewtonError::Singular { .. }) {
+        let wrong = wrong_derivative(problem, which, (u, p), Guard::new(domain), 1.0);
+        return wrong.map_or(TraceError::Start(error), TraceError::WrongDerivative);
+    }
+    TraceError::Start(error)
 }
 
 /// Whether the parameter increases at first.

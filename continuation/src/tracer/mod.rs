@@ -17,7 +17,9 @@
 
 mod begin;
 mod both_ways;
+mod bound;
 mod closure;
+mod examine;
 mod input;
 mod narrow;
 mod restart;
@@ -40,7 +42,9 @@ use crate::sound::{check_sizes, examine};
 use crate::step::{
     Constraint, Core, Precision, Refusal, State, StepSize, Weights, curve_scale, judge,
 };
-use input::{begins_at_target, check, increases, range, singular_everywhere, unknown_observable};
+use input::{
+    begins_at_target, check, increases, no_start, range, singular_everywhere, unknown_observable,
+};
 use special::Special;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -48,9 +52,6 @@ use switching::Departure;
 
 /// Part of the separation on a curve of special points below which two of them meet.
 const MEETING: f64 = 1e-3;
-
-/// Distance from a bound, in scales of the parameter, that is rounding.
-const ON_BOUND: f64 = 1e-14;
 
 /// Number of unknowns up to which the rank of every start is looked at: that costs next to nothing.
 const SMALL: usize = 60;
@@ -85,6 +86,8 @@ pub struct Tracer<'a, P: Problem> {
     anchor_s: f64,
     // the scales that were expected, while those of the branch are smaller
     expected: Option<Weights>,
+    // corrections that took many assemblies
+    laborious: usize,
     // the largest separation on a curve of special points so far
     separation: f64,
     s: f64,
@@ -157,8 +160,10 @@ impl<'a, P: Problem> Tracer<'a, P> {
         }
         let everywhere =
             |u: &[f64]| singular_everywhere(problem, ParamId(which), u, p, range, settings.domain);
-        let report = newton(problem, &mut start.u, p, &NewtonSettings::default())
-            .map_err(|error| everywhere(u).unwrap_or(TraceError::Start(error)))?;
+        let report =
+            newton(problem, &mut start.u, p, &NewtonSettings::default()).map_err(|error| {
+                no_start(problem, ParamId(which), (u, p), settings.domain, everywhere(u), error)
+            })?;
         begin::settle(problem, u, &mut start.u, p);
 
         let increasing = increases(&settings, start.p);
@@ -224,6 +229,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             anchor: start.clone(),
             anchor_s: 0.0,
             expected: None,
+            laborious: 0,
             separation: 0.0,
             s: 0.0,
             running_unstable: start.unstable,
@@ -377,6 +383,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             match self.attempt(h, final_say) {
                 Ok(()) => {
                     self.core.statistics.accepted += 1;
+                    self.examine_derivatives();
                     return;
                 }
                 Err(refusal) => {
@@ -403,15 +410,16 @@ impl<'a, P: Problem> Tracer<'a, P> {
                     if h < shortest {
                         let p = self.current.p;
                         let name = self.core.problem.parameters()[self.core.which.0].name;
-                        return self.end(
-                            StopReason::StepTooSmall,
-                            format!(
-                                "at {name} = {p:.10} steps from {:.1e} down to {:.1e} were refused, \
-                                 the last because: {refusal}",
-                                first,
-                                2.0 * h * length,
-                            ),
+                        let mut detail = format!(
+                            "at {name} = {p:.10} steps from {:.1e} down to {:.1e} were refused, \
+                             the last because: {refusal}",
+                            first,
+                            2.0 * h * length,
                         );
+                        if let Some(wrong) = self.core.wrong_derivative(&self.current.clone()) {
+                            detail = format!("{detail}; {wrong}");
+                        }
+                        return self.end(StopReason::StepTooSmall, detail);
                     }
                 }
             }
@@ -441,20 +449,19 @@ impl<'a, P: Problem> Tracer<'a, P> {
         false
     }
 
-    /// Whether the whole step lies on a bound of the domain, to rounding: the branch tends to it.
-    fn runs_along_bound(&self) -> bool {
-        let Some((lo, hi)) = self.settings.domain else { return false };
-        let near = ON_BOUND * self.core.weights.parameter;
-        let on =
-            |bound: f64| [&self.current, &self.trial].iter().all(|x| (x.p - bound).abs() <= near);
-        self.left_start && (on(lo) || on(hi))
-    }
-
     /// Tries a step of scaled length `h`.
     fn attempt(&mut self, h: f64, final_say: bool) -> Result<(), Refusal> {
         self.predict(h);
+        let before = self.core.statistics.newton_iterations;
+        let (h, corrected) = match self.meets_bound(h) {
+            Some((at, bound)) => self.step_to_bound(at, bound)?,
+            None => {
+                let Self { core, current, trial, .. } = self;
+                (h, core.correct(Constraint::Plane(current, h), trial, Precision::Step)?)
+            }
+        };
         let Self { core, current, trial, settings, .. } = self;
-        let corrected = core.correct(Constraint::Plane(current, h), trial, Precision::Step)?;
+        let laborious = core.statistics.newton_iterations - before >= examine::LABORIOUS;
         let secant = core.secant(current, trial);
         let tangents = core.weights.dot(&current.mtu, current.tp, &trial.tu, trial.tp);
         let quality = judge(settings, trial, h, &corrected, secant, tangents)?;
@@ -487,6 +494,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let (from, to) = (self.current.p, self.trial.p);
         let length = self.trial.length;
         self.accept(h, &special, s_trial, returned)?;
+        self.laborious += usize::from(laborious && self.laborious < examine::MANY);
         if let Some(reason) = doubt {
             self.doubts.push(Doubt { from, to, reason: reason.to_owned() });
         }
@@ -499,12 +507,18 @@ impl<'a, P: Problem> Tracer<'a, P> {
 
     /// Quadratic extrapolation of the branch; along the tangent at first.
     fn predict(&mut self, h: f64) {
+        self.trial.p = self.predicted(h);
         let Self { current, previous, trial, .. } = self;
         let bend = if self.previous_h > 0.0 { 0.5 * h * h / self.previous_h } else { 0.0 };
         for i in 0..trial.u.len() {
             trial.u[i] = current.u[i] + (h + bend) * current.tu[i] - bend * previous.tu[i];
         }
-        trial.p = current.p + (h + bend) * current.tp - bend * previous.tp;
+    }
+
+    /// The parameter of that.
+    fn predicted(&self, h: f64) -> f64 {
+        let bend = if self.previous_h > 0.0 { 0.5 * h * h / self.previous_h } else { 0.0 };
+        self.current.p + (h + bend) * self.current.tp - bend * self.previous.tp
     }
 
     fn metric_distance(&mut self) -> f64 {
