@@ -53,9 +53,9 @@ pub struct Settings {
     /// of one point, unless [`Settings::increasing`] says which way it is to be left first.
     pub target: Option<f64>,
     /// The trace ends where the parameter meets a bound of this interval, of which one may be infinite, with
-    /// the start inside; met exactly, as the last point. No state outside is evaluated; where the problem
-    /// computes its own derivatives by differences, these reach a little beyond, as do the differences
-    /// for normal forms, by at most a hundredth of the interval.
+    /// the start inside; met exactly, as the last point. No state outside is evaluated, but for the
+    /// differences: those of a problem that has no derivatives of its own, and those for the normal form
+    /// of a branch point, which look how far the nonlinearity lets them.
     pub domain: Option<(f64, f64)>,
     /// Whether the parameter increases at first; `None`: towards the target, else upwards. Without
     /// meaning for [`crate::Tracer::leaving`], which has a direction.

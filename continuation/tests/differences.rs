@@ -315,5 +315,5 @@ fn a_jacobian_without_a_value_is_not_called_singular() {
     let problem = Broken(Half(vec![continuation::Parameter { name: "p", unit: "", scale: 1.0 }]));
     let settings = Settings { target: Some(2.0), ..Settings::default() };
     let error = Tracer::new(&problem, "p", &[0.5], &[1.0], settings).err().unwrap();
-    assert!(error.to_string().contains("not a finite number"), "{error}");
+    assert!(error.to_string().contains("row 0 of the Jacobian is not finite"), "{error}");
 }

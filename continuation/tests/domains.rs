@@ -135,9 +135,10 @@ fn folds_near_a_bound() {
     }
 }
 
+/// A pitchfork at p = 1, and branches that leave through both bounds: only its normal form may look
+/// beyond them.
 #[test]
 fn diagrams_stay_inside() {
-    // a pitchfork at p = 1, branches that leave through both bounds
     let problem = Asked::new(|u: f64, p| [(p - 1.0) * u - u.powi(3), p - 1.0 - 3.0 * u * u, u]);
     let domain = (0.2, 1.7);
     let trace = Settings { domain: Some(domain), ..Settings::default() };
@@ -147,5 +148,18 @@ fn diagrams_stay_inside() {
         .run(&mut |_| ControlFlow::Continue(()))
         .unwrap();
     assert_eq!(diagram.branches.len(), 3);
-    assert!(problem.inside(domain), "{} {}", problem.lowest.get(), problem.highest.get());
+    let points = diagram.branches.iter().flat_map(|b| &b.branch.points);
+    assert!(points.clone().count() > 30 && points.clone().all(|x| (0.2..=1.7).contains(&x.p)));
+    for branch in &diagram.branches[1..] {
+        problem.lowest.set(f64::INFINITY);
+        problem.highest.set(f64::NEG_INFINITY);
+        let end = branch.branch.points.last().unwrap();
+        let settings = Settings { domain: Some(domain), ..Settings::default() };
+        let settings = Settings { increasing: Some(end.p < 1.0), ..settings };
+        Tracer::new(&problem, "p", &[end.u[0] * 0.9], &[1.0 + 0.81 * (end.p - 1.0)], settings)
+            .unwrap()
+            .take(3)
+            .count();
+        assert!(problem.inside(domain), "{} {}", problem.lowest.get(), problem.highest.get());
+    }
 }

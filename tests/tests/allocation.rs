@@ -55,12 +55,14 @@ fn the_loop_does_not_allocate() {
     let watches = [Watch::zero("force"), Watch::extremum("force")];
     let mut tracer =
         Tracer::new(&problem, "z0", &u, &p, settings).unwrap().watching(&watches).unwrap();
+    // the first steps look at the derivatives, once
+    let begun = tracer.by_ref().take(6).count();
     let region = Region::new(ALLOCATOR);
     let points = tracer.by_ref().count();
     let change = region.change();
     let iterations = tracer.statistics().newton_iterations;
     let allowed = 2 * points + 12 * (tracer.events().len() + 2);
-    assert!(points > 20 && iterations > 2 * points);
+    assert!(begun == 6 && points > 20 && iterations > 2 * points);
     assert!(
         change.allocations <= allowed,
         "{change:?} for {points} points, {iterations} iterations"

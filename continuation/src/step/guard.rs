@@ -6,9 +6,6 @@ use crate::problem::EvalError;
 /// corrections explain: the problem is asked at the bound then.
 const SLACK: f64 = 1e-10;
 
-/// How far differences for normal forms may reach beyond a bound, in widths of the domain.
-const REACH: f64 = 1e-2;
-
 /// The values of the continued parameter at which a problem may be evaluated.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Guard {
@@ -29,16 +26,6 @@ impl Guard {
         let bound = self.nearest(p);
         if (p - bound).abs() <= SLACK * (self.width + bound.abs()) || p.is_nan() {
             return Ok(bound);
-        }
-        Err(EvalError::OutsideDomain { value: p, bound })
-    }
-
-    /// Whether a difference may reach to `p`.
-    pub(crate) fn admits_difference(&self, p: f64) -> Result<(), EvalError> {
-        let bound = self.nearest(p);
-        let scale = if self.width > 0.0 { self.width } else { bound.abs() };
-        if p.is_nan() || (p - bound).abs() <= REACH * scale {
-            return Ok(());
         }
         Err(EvalError::OutsideDomain { value: p, bound })
     }
