@@ -100,26 +100,29 @@ fn the_arch_that_snaps_the_other_way() {
         let (near, branches) = explore(&problem, &start, &[0.0, 4.0, e], (0.0, 30.0));
         assert_eq!(near.len(), 1, "{e}: {near:?}");
         assert!((near[0].p - 14.38).abs() < 0.1, "{}", near[0].p);
-        assert_eq!(branches.len(), 2, "{e}");
         let passes = |b: &Branch| {
             let signs = b.points.windows(2).map(|w| (w[0].p - 10.0) * (w[1].p - 10.0));
             signs.filter(|product| *product < 0.0).count()
         };
-        assert_eq!(branches.iter().map(passes).collect::<Vec<_>>(), [2, 2], "{e}");
-        // the snapped states are far from it, connected only through negative loads: they are found
-        // where they are asked for
+        // the snapped states are far from it, connected only through negative loads: if not already
+        // beside the near-bifurcation, they are found where they are asked for
+        let all: Vec<_> = branches.iter().map(passes).collect();
+        assert!(all == [2, 2] || all == [2, 2, 1], "{e}: {all:?}");
         let search = DeflationSettings::default();
         let found = disconnected(&problem, &branches, &[], &[10.0], &search).unwrap();
         let settings = Settings { domain: Some((0.0, 30.0)), ..Settings::default() };
-        let snapped = found.iter().any(|start| {
-            let (u, p, settings) = (&start.u, &start.p, settings.clone());
-            let mut go_on = |_: &_| ControlFlow::Continue(());
-            let name = problem.parameters()[0].name;
-            let branch = both_ways(&problem, name, u, p, settings, &[], &mut go_on).unwrap();
-            passes(&branch) == 1
-        });
+        let snapped = branches[2..].iter().any(|b| passes(b) == 1);
+        let snapped = snapped
+            || found.iter().any(|start| {
+                let (u, p, settings) = (&start.u, &start.p, settings.clone());
+                let mut go_on = |_: &_| ControlFlow::Continue(());
+                let name = problem.parameters()[0].name;
+                let branch = both_ways(&problem, name, u, p, settings, &[], &mut go_on).unwrap();
+                passes(&branch) == 1
+            });
         assert!(snapped, "{e}: {} found", found.len());
-        let highest = branches[1..].iter().flat_map(|b| &b.events).map(|f| f.p).fold(0.0, f64::max);
+        let highest =
+            branches[1..2].iter().flat_map(|b| &b.events).map(|f| f.p).fold(0.0, f64::max);
         assert!((26.0..26.5).contains(&highest), "{highest}");
     }
 }

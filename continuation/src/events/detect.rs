@@ -108,6 +108,9 @@ const NEGLIGIBLE: f64 = 1e-7;
 /// Changes of uncertain counts that are followed up in vain before they are only noted: each costs a
 /// score of short steps.
 const MOST_FUTILE: usize = 4;
+/// Part of a step within which an extremum is at a pitchfork met from its side: far less than two
+/// special points would be apart, far more than a cubic is wrong in a step that resolves both.
+const SAME_PLACE: f64 = 0.02;
 /// Rounding level of an observable relative to its magnitude.
 const NOISE: f64 = 1e-12;
 
@@ -279,8 +282,10 @@ impl Detector {
             }
         }
         let singular = self.found.iter().filter(|c| c.is_singular()).count();
-        // a pitchfork met from its side is both a fold and a branch point
-        let pitchfork = singular == 2
+        // a pitchfork met from its side is both a fold and a branch point, and an extremum of
+        // everything that is the same on its two sides
+        let extremum = |c: &Candidate| matches!(c, Candidate::Extremum { .. });
+        let pitchfork = singular == 2 + self.found.iter().filter(|c| extremum(c)).count()
             && matches!(
                 self.found[..],
                 [Candidate::Fold, Candidate::BranchPoint { kernel: 1 }, ..]
@@ -482,6 +487,13 @@ impl Detector {
             _ => f64::INFINITY,
         };
         ends.min_by(|x, y| distance(x).total_cmp(&distance(y))).copied()
+    }
+
+    /// Whether the observable, which has an extremum in the step from `a` to `b`, has it at the
+    /// distance `at`, as far as values and slopes at the ends tell.
+    pub(crate) fn is_extremal_at(&self, a: &State, b: &State, k: usize, h: f64, at: f64) -> bool {
+        let extrema = self.cubic(a, b, k, 0.0, h).extrema();
+        extrema.into_iter().flatten().any(|x| (x - at).abs() < SAME_PLACE * h)
     }
 
     /// What the latest [`Detector::detect`] found.

@@ -169,6 +169,46 @@ impl Frame {
         self.factor(probe);
         Some(())
     }
+
+    /// Turns the right vectors within their span so that the first is the nearest to `direction`:
+    /// where they mix the branch with what leaves it, the form's entries must cancel to tell the two
+    /// apart, and differences along a mixture are no better than its natural amplitude allows.
+    fn turn<P: Problem>(&mut self, probe: &mut Probe<'_, P>, direction: &Extended) -> Option<()> {
+        let along = probe.covector(direction);
+        let right: Vec<Extended> = (0..=self.k).map(|i| self.right(probe, i).0).collect();
+        let mut first = Extended::zero(direction.u.len());
+        for v in &right {
+            first.add(along.dot(v), v);
+        }
+        let mut turned = Vec::with_capacity(self.k + 1);
+        let mut left = right;
+        let mut next = first;
+        loop {
+            let norm = probe.norm(&next);
+            if !(norm.is_finite() && norm > 0.0) {
+                return None;
+            }
+            next.scale(1.0 / norm);
+            let done = probe.covector(&next);
+            for v in &mut left {
+                let along = done.dot(v);
+                v.add(-along, &next);
+            }
+            turned.push(done);
+            if turned.len() > self.k {
+                break;
+            }
+            // of those that remain the longest: one of them was used up
+            let norms: Vec<f64> = left.iter().map(|v| probe.norm(v)).collect();
+            let longest = (0..left.len()).max_by(|&a, &b| norms[a].total_cmp(&norms[b]))?;
+            next = left.swap_remove(longest);
+        }
+        for (i, c) in turned.iter().enumerate() {
+            self.set_row(i, c);
+        }
+        self.factor(probe);
+        Some(())
+    }
 }
 
 /// Numbers without any pattern, in (-1, 1), always the same.
@@ -249,6 +289,8 @@ fn finish<P: Problem>(
     probe.assemble(&z)?;
     frame.factor(probe);
     frame.renew(probe).ok_or(Failure::NoConvergence)?;
+    frame.turn(probe, tangent).ok_or(Failure::NoConvergence)?;
+    amplitude.clear();
     let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent)?;
     // lengths, in natural amplitudes, over which the quadratic form makes the defect and the
     // unfolding
@@ -316,12 +358,12 @@ impl Local {
                 }
             }
         }
-        // differences in both orders: their mean is symmetric
+        // differences in both orders: their mean is symmetric; along the branch itself a step is a
+        // part of the parameter's range, whatever happens within, along the others of a natural one
         for f in &mut form {
             for i in 0..=k {
                 for l in 0..i {
-                    // the parameter direction first: its differences are exact for most problems
-                    let mean = 0.5 * (f[i][l] + f[l][i]);
+                    let mean = if l == 0 { f[0][i] } else { 0.5 * (f[i][l] + f[l][i]) };
                     (f[i][l], f[l][i]) = (mean, mean);
                 }
             }

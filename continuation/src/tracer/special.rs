@@ -60,6 +60,7 @@ impl<P: Problem> Tracer<'_, P> {
                 own_fold |= crossing.from_side;
             }
         }
+        let pitchfork = located.first().filter(|_| own_fold).map(|special| special.place.at);
         let fold_too = !located.is_empty() && candidates.contains(&Candidate::Fold);
         if fold_too && !own_fold && !final_say {
             return Err(Refusal::SeveralEvents);
@@ -69,6 +70,16 @@ impl<P: Problem> Tracer<'_, P> {
                 || (own_fold && *candidate == Candidate::Fold);
             if done {
                 continue;
+            }
+            // nor an extremum of what is the same on its two sides
+            if let (Some(at), Candidate::Extremum { observable }) = (pitchfork, *candidate) {
+                let (a, b) = (&self.current, &self.trial);
+                if self.detector.is_extremal_at(a, b, observable, h, at) {
+                    continue;
+                }
+                if !final_say {
+                    return Err(Refusal::SeveralEvents);
+                }
             }
             match *candidate {
                 // tests of a curve of special points are continuous and know their noise

@@ -14,6 +14,10 @@ use crate::singular::Extended;
 use crate::step::{Constraint, Core, Precision, Refusal, State, Weights, dot, judge};
 use serde::{Deserialize, Serialize};
 
+/// A slope at the branch point below this part of that after the first step is zero: what a symmetry
+/// keeps stationary along the new branch is an extremum at the branch point itself, not after it.
+const STATIONARY: f64 = 0.1;
+
 /// Which way the new branch leaves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Departure {
@@ -166,6 +170,15 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let turned = old.dot(&Extended { u: trial.tu.clone(), p: trial.tp }).abs();
         if on_old >= along || turned >= tangents {
             return Err(Refusal::OldBranch);
+        }
+        // the direction at a branch point is as good as its normal form, and slopes along it no
+        // better: those that values and slopes after the step say
+        let slope = |before: f64, after: f64, end: f64| {
+            let start = 2.0 * (after - before) / h - end;
+            if start.abs() < STATIONARY * end.abs() { 0.0 } else { start }
+        };
+        for k in 0..current.slopes.len() {
+            current.slopes[k] = slope(current.values[k], trial.values[k], trial.slopes[k]);
         }
         let outside = |(lo, hi): (f64, f64)| {
             current.p == lo && trial.p < lo || current.p == hi && trial.p > hi
