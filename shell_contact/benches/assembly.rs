@@ -2,6 +2,7 @@
 
 use continuation::Problem;
 use criterion::{Criterion, criterion_group, criterion_main};
+use shell_contact::two_plates::{TwoPlatesGroups, TwoPlatesProblem};
 use shell_contact::{ContactProblem, Dimensionless, Law, Mesh, Shell};
 use std::hint::black_box;
 
@@ -18,6 +19,17 @@ fn problem(elements: usize, law: Law) -> Option<ContactProblem> {
 }
 
 fn assembly(c: &mut Criterion) {
+    if let Some(half) = problem(400, Law::Hooke) {
+        let groups = TwoPlatesGroups::equal(half.groups());
+        if let Ok(whole) = TwoPlatesProblem::new(half.shell(), &groups, half.mesh().clone()) {
+            let (u, p) = (whole.initial_state(), whole.parameters_at(1.03));
+            let mut r = vec![0.0; whole.dim()];
+            let mut j = whole.new_jacobian();
+            c.bench_function("linearise/two_plates/400", |b| {
+                b.iter(|| whole.linearise(black_box(&u), &p, &mut r, &mut j));
+            });
+        }
+    }
     for (name, law) in [("hooke", Law::Hooke), ("mooney_rivlin", Law::MooneyRivlin { b: 1.0 })] {
         for elements in [400, 3200] {
             let Some(problem) = problem(elements, law) else { continue };

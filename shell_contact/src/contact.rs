@@ -12,6 +12,7 @@ use crate::membrane::Membrane;
 use crate::meridian::Mesh;
 use crate::observables::{self, Observation};
 use crate::params::{Dimensionless, ParameterError, Shell};
+use crate::plate::{self, Variable};
 use crate::scalar::{Lanes, Scalar};
 use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::SymmetricBand;
@@ -37,6 +38,16 @@ pub mod parameter {
     pub const SURFACE_TENSION: ParamId = ParamId(5);
     /// How many there are.
     pub const COUNT: usize = 6;
+}
+
+/// What of the plate's film a parameter is, if it is.
+pub(crate) fn variable(which: ParamId) -> Option<Variable> {
+    match which {
+        parameter::Z0 => Some(Variable::Height),
+        parameter::ADHESION => Some(Variable::Adhesion),
+        parameter::FILM => Some(Variable::Length),
+        _ => None,
+    }
 }
 
 /// Runs `$body` with `$law` bound to the problem's membrane law as its own type.
@@ -227,38 +238,6 @@ impl<F: Potential> ContactProblem<F> {
             density::gradient(law, film, &c, at, x)
         })
     }
-
-    /// The factor by which `∂E/∂z_p` becomes the reported force.
-    fn force_factor(bending: f64) -> f64 {
-        -2.0 * PI / bending.sqrt()
-    }
-
-    /// Slope of `∂E/∂z_p` in the direction `(du, dp)`.
-    fn plate_pull_slope(
-        &self,
-        u: &[f64],
-        c: &Coefficients,
-        which: ParamId,
-        du: &[f64],
-        dp: f64,
-    ) -> Result<f64, EvalError> {
-        let film = &self.potential;
-        let (adhesion, length) = (c.adhesion, c.film);
-        energy::integrate_along(&self.mesh, u, du, c.plate, |at, x, d| {
-            let a = (x.s[1] * x.s[1] + x.z[1] * x.z[1]).sqrt();
-            let delta = -(x.z[0] - c.plate);
-            let f = film.jet(delta, adhesion, length);
-            let stretch = (x.s[1] * d.s[1] + x.z[1] * d.z[1]) / a;
-            let along = f.d1 * (a * d.s[0] + x.s[0] * stretch) - f.d2 * x.s[0] * a * d.z[0];
-            let direct = match which {
-                parameter::Z0 => f.d2,
-                parameter::ADHESION => film.by_adhesion(delta, adhesion, length).1,
-                parameter::FILM => film.by_length(delta, adhesion, length).1,
-                _ => Lanes::constant(0.0),
-            };
-            (along + direct * x.s[0] * a * dp) * at.weight
-        })
-    }
 }
 
 impl<F: Potential> Problem for ContactProblem<F> {
@@ -314,25 +293,15 @@ impl<F: Potential> Problem for ContactProblem<F> {
         for out in out.iter_mut() {
             *out *= -by_excess;
         }
-        let gap = |z: Lanes| -(z - c.plate);
+        if let Some(variable) = variable(which) {
+            return plate::add_gradient_by(mesh, film, u, &c, variable, out);
+        }
         match which {
-            parameter::Z0 => energy::add_gradient(mesh, u, c.plate, out, |at, x| {
-                let f = film.jet(gap(x.z[0]), c.adhesion, c.film);
-                density::area_gradient(f.d1, -f.d2, at, x)
-            }),
-            parameter::ADHESION => energy::add_gradient(mesh, u, c.plate, out, |at, x| {
-                let (w, d1) = film.by_adhesion(gap(x.z[0]), c.adhesion, c.film);
-                density::area_gradient(w, -d1, at, x)
-            }),
-            parameter::FILM => energy::add_gradient(mesh, u, c.plate, out, |at, x| {
-                let (w, d1) = film.by_length(gap(x.z[0]), c.adhesion, c.film);
-                density::area_gradient(w, -d1, at, x)
-            }),
             parameter::BENDING => energy::add_gradient(mesh, u, c.plate, out, |at, x| {
                 density::bending_gradient(c.poisson, at, x)
             }),
             parameter::SURFACE_TENSION => energy::add_gradient(mesh, u, c.plate, out, |at, x| {
-                density::area_gradient(Lanes::constant(1.0), Lanes::ZERO, at, x)
+                density::area_gradient(Scalar::constant(1.0), Lanes::ZERO, at, x)
             }),
             _ => energy::admissible(mesh, u, c.plate),
         }
@@ -373,20 +342,16 @@ impl<F: Potential> Problem for ContactProblem<F> {
         dp: f64,
     ) -> Result<Option<f64>, EvalError> {
         let (c, gas) = self.coefficients(u, p)?;
-        let volume_slope = || {
-            energy::integrate_along(&self.mesh, u, du, c.plate, |at, x, d| {
-                let s = x.s[0];
-                -(s * (x.z[1] * d.s[0] + s * d.z[1] * 0.5) * at.weight)
-            })
-        };
+        let volume_slope = || energy::volume_along(&self.mesh, u, du, c.plate);
         match observables::NAMES.get(k).copied() {
             Some("force") => {
-                let mut slope = self.plate_pull_slope(u, &c, which, du, dp)?;
+                let (mesh, film) = (&self.mesh, &self.potential);
+                let by = variable(which).map(|variable| (variable, dp));
+                let mut slope = plate::pull_along(mesh, film, u, &c, du, by)?;
                 if which == parameter::BENDING {
-                    let pull = observables::plate_pull(self, u, &c)?;
-                    slope -= 0.5 * pull * dp / c.bending;
+                    slope -= 0.5 * plate::pull(mesh, film, u, &c)? * dp / c.bending;
                 }
-                Ok(Some(Self::force_factor(c.bending) * slope))
+                Ok(Some(plate::force_factor(c.bending) * slope))
             }
             Some("pole_height") => Ok(Some(self.mesh.displacement_in(du, 0, 0.0)[0].1)),
             Some("volume") => Ok(Some(4.0 * PI * volume_slope()?)),

@@ -1,5 +1,7 @@
 //! Assembly of energy, gradient and Hessian of the half shell, over `2π`.
 //!
+//! A shell without mirror symmetry is the sum over its two halves ([`HalfMeridian`]).
+//!
 //! One pass gives `V̂` and its gradient `v`; with the gas pressure known a second pass gives the
 //! rest. Each element is summed into a local 8-vector and 8×8 triangle, then scattered. The gas
 //! couples everything through `V̂`: Hessian = band + `(γP_G/V̂) v vᵀ`, the band containing
@@ -11,8 +13,9 @@
 
 use crate::density::{self, Coefficients, Gradient, Hessian, Parts, Site};
 use crate::film::Potential;
+use crate::half::HalfMeridian;
 use crate::membrane::Membrane;
-use crate::meridian::{Cell, Local, Mesh, Place};
+use crate::meridian::{Cell, Local, Place};
 use crate::scalar::{Lanes, WIDTH};
 use continuation::EvalError;
 use continuation::linalg::SymmetricBand;
@@ -38,7 +41,12 @@ impl Cell {
 ///
 /// # Errors
 /// When it is not positive, or the unknowns are not finite.
-pub fn volume(mesh: &Mesh, x: &[f64]) -> Result<f64, EvalError> {
+pub fn volume(mesh: &impl HalfMeridian, x: &[f64]) -> Result<f64, EvalError> {
+    check_volume(half_volume(mesh, x), x)
+}
+
+/// [`volume`] of one of two halves, which may have any sign.
+pub(crate) fn half_volume(mesh: &impl HalfMeridian, x: &[f64]) -> f64 {
     let mut sum = Lanes::ZERO;
     for e in 0..mesh.elements() {
         let local = mesh.local(x, e);
@@ -47,15 +55,25 @@ pub fn volume(mesh: &Mesh, x: &[f64]) -> Result<f64, EvalError> {
             sum = sum + p.s[0] * p.s[0] * p.z[1] * cell.weight;
         }
     }
-    check_volume(-0.5 * sum.sum(), x)
+    -0.5 * sum.sum()
 }
 
 /// `V̂`, and its gradient in `v`.
 ///
 /// # Errors
 /// As [`volume`].
-pub fn volume_gradient(mesh: &Mesh, x: &[f64], v: &mut [f64]) -> Result<f64, EvalError> {
+pub fn volume_gradient(
+    mesh: &impl HalfMeridian,
+    x: &[f64],
+    v: &mut [f64],
+) -> Result<f64, EvalError> {
     v.fill(0.0);
+    let volume = add_volume_gradient(mesh, x, v);
+    check_volume(volume, x)
+}
+
+/// [`volume_gradient`] of one of two halves, whose volume may have any sign; adds to `v`.
+pub(crate) fn add_volume_gradient(mesh: &impl HalfMeridian, x: &[f64], v: &mut [f64]) -> f64 {
     let mut sum = Lanes::ZERO;
     for e in 0..mesh.elements() {
         let local = mesh.local(x, e);
@@ -73,10 +91,11 @@ pub fn volume_gradient(mesh: &Mesh, x: &[f64], v: &mut [f64]) -> Result<f64, Eva
         }
         mesh.scatter(e, &element, v);
     }
-    check_volume(sum.sum(), x)
+    sum.sum()
 }
 
-fn check_volume(volume: f64, x: &[f64]) -> Result<f64, EvalError> {
+/// The volume of a shell, if it has one.
+pub(crate) fn check_volume(volume: f64, x: &[f64]) -> Result<f64, EvalError> {
     if volume > 0.0 && volume.is_finite() {
         Ok(volume)
     } else if let Some(at) = x.iter().position(|x| !x.is_finite()) {
@@ -90,8 +109,13 @@ fn check_volume(volume: f64, x: &[f64]) -> Result<f64, EvalError> {
 ///
 /// # Errors
 /// Says what is violated, at which Gauss point.
-pub fn admissible(mesh: &Mesh, x: &[f64], plate: f64) -> Result<(), EvalError> {
+pub fn admissible(mesh: &impl HalfMeridian, x: &[f64], plate: f64) -> Result<(), EvalError> {
     volume(mesh, x)?;
+    is_clear(mesh, x, plate)
+}
+
+/// [`admissible`] of one of two halves, whose volume may have any sign.
+pub(crate) fn is_clear(mesh: &impl HalfMeridian, x: &[f64], plate: f64) -> Result<(), EvalError> {
     check_pole(mesh, x, plate)?;
     for e in 0..mesh.elements() {
         let local = mesh.local(x, e);
@@ -104,9 +128,9 @@ pub fn admissible(mesh: &Mesh, x: &[f64], plate: f64) -> Result<(), EvalError> {
 }
 
 /// Pole and plate.
-fn check_pole(mesh: &Mesh, x: &[f64], plate: f64) -> Result<(), EvalError> {
+fn check_pole(mesh: &impl HalfMeridian, x: &[f64], plate: f64) -> Result<(), EvalError> {
     let z = 1.0 + mesh.displacement_in(x, 0, 0.0)[0].1;
-    if z < 0.0 {
+    if z < mesh.floor() {
         return Err(EvalError::Inadmissible { what: DIMPLES_MEET, at: 0, value: z });
     }
     if z >= plate {
@@ -116,14 +140,20 @@ fn check_pole(mesh: &Mesh, x: &[f64], plate: f64) -> Result<(), EvalError> {
 }
 
 #[inline(always)]
-fn check_gap(mesh: &Mesh, x: &[f64], e: usize, c: &Local, plate: f64) -> Result<(), EvalError> {
+fn check_gap(
+    mesh: &impl HalfMeridian,
+    x: &[f64],
+    e: usize,
+    c: &Local,
+    plate: f64,
+) -> Result<(), EvalError> {
     // cos S + w, each bounded by its largest coefficient
     if plate > mesh.cos_knot(e) + c.w_bound() { Ok(()) } else { search_gap(mesh, x, e, plate) }
 }
 
 /// Bisection: looks for a point of element `e` at or above the plate until none can be left.
 #[cold]
-fn search_gap(mesh: &Mesh, x: &[f64], e: usize, plate: f64) -> Result<(), EvalError> {
+fn search_gap(mesh: &impl HalfMeridian, x: &[f64], e: usize, plate: f64) -> Result<(), EvalError> {
     let (start, end) = (mesh.knots().at(e), mesh.knots().at(e + 1));
     let w = |s: f64| mesh.displacement_in(x, e, s);
     let z = |s: f64| s.cos() + w(s)[0].1;
@@ -155,7 +185,7 @@ fn search_gap(mesh: &Mesh, x: &[f64], e: usize, plate: f64) -> Result<(), EvalEr
 
 #[inline(always)]
 fn check_place(
-    mesh: &Mesh,
+    mesh: &impl HalfMeridian,
     e: usize,
     k: usize,
     p: &Place<Lanes>,
@@ -163,7 +193,7 @@ fn check_place(
 ) -> Result<(), EvalError> {
     let delta = -(p.z[0] - plate);
     let q = p.s[1] * p.s[1] + p.z[1] * p.z[1] - LEAST_SQUARED_STRETCH;
-    if delta.min(p.s[0]).min(p.z[0].min(q)).positive() {
+    if delta.min(p.s[0]).min((p.z[0] - mesh.floor()).min(q)).positive() {
         Ok(())
     } else {
         Err(refuse(mesh, e, k, p, plate))
@@ -171,7 +201,7 @@ fn check_place(
 }
 
 #[cold]
-fn refuse(mesh: &Mesh, e: usize, k: usize, p: &Place<Lanes>, plate: f64) -> EvalError {
+fn refuse(mesh: &impl HalfMeridian, e: usize, k: usize, p: &Place<Lanes>, plate: f64) -> EvalError {
     for lane in 0..WIDTH {
         let at = e * mesh.gauss_points() + (k * WIDTH + lane).min(mesh.gauss_points() - 1);
         let [s, s1, _] = p.s.map(|x| x.0[lane]);
@@ -179,7 +209,7 @@ fn refuse(mesh: &Mesh, e: usize, k: usize, p: &Place<Lanes>, plate: f64) -> Eval
         let q = s1 * s1 + z1 * z1;
         let found = [
             (plate - z, 0.0, THROUGH_THE_PLATE),
-            (z, 0.0, DIMPLES_MEET),
+            (z, mesh.floor(), DIMPLES_MEET),
             (s, 0.0, INSIDE_OUT),
             (q, LEAST_SQUARED_STRETCH, CUSP),
         ];
@@ -200,7 +230,19 @@ fn refuse(mesh: &Mesh, e: usize, k: usize, p: &Place<Lanes>, plate: f64) -> Eval
 /// # Errors
 /// When the state is not admissible.
 pub fn parts<L: Membrane, F: Potential>(
-    mesh: &Mesh,
+    mesh: &impl HalfMeridian,
+    x: &[f64],
+    law: &L,
+    film: &F,
+    c: &Coefficients,
+) -> Result<Parts<f64>, EvalError> {
+    let volume = volume(mesh, x)?;
+    Ok(Parts { volume, ..half_parts(mesh, x, law, film, c)? })
+}
+
+/// [`parts`] of one of two halves but for its volume, which is left at zero.
+pub(crate) fn half_parts<L: Membrane, F: Potential>(
+    mesh: &impl HalfMeridian,
     x: &[f64],
     law: &L,
     film: &F,
@@ -208,7 +250,6 @@ pub fn parts<L: Membrane, F: Potential>(
 ) -> Result<Parts<f64>, EvalError> {
     let none = Lanes::ZERO;
     let mut total = Parts { stretching: none, bending: none, film: none, area: none, volume: none };
-    let volume = volume(mesh, x)?;
     each_cell(mesh, x, c.plate, |cell, place| {
         let p = density::parts(law, film, c, &cell.site(), place);
         total.stretching = total.stretching + p.stretching;
@@ -221,13 +262,13 @@ pub fn parts<L: Membrane, F: Potential>(
         bending: total.bending.sum(),
         film: total.film.sum(),
         area: total.area.sum(),
-        volume,
+        volume: 0.0,
     })
 }
 
 /// Visits all Gauss points, checking each.
 fn each_cell(
-    mesh: &Mesh,
+    mesh: &impl HalfMeridian,
     x: &[f64],
     plate: f64,
     mut visit: impl FnMut(&Cell, &Place<Lanes>),
@@ -247,7 +288,7 @@ fn each_cell(
 
 /// The integral of `f(site, place)` over the meridian.
 pub(crate) fn integrate(
-    mesh: &Mesh,
+    mesh: &impl HalfMeridian,
     x: &[f64],
     plate: f64,
     f: impl Fn(&Site<Lanes>, &Place<Lanes>) -> Lanes,
@@ -259,7 +300,7 @@ pub(crate) fn integrate(
 
 /// The integral of `f(site, place, direction)`, the direction being that of the unknowns `dx`.
 pub(crate) fn integrate_along(
-    mesh: &Mesh,
+    mesh: &impl HalfMeridian,
     x: &[f64],
     dx: &[f64],
     plate: f64,
@@ -278,12 +319,25 @@ pub(crate) fn integrate_along(
     Ok(sum.sum())
 }
 
+/// Slope of `V̂` in the direction of the unknowns `dx`.
+pub(crate) fn volume_along(
+    mesh: &impl HalfMeridian,
+    x: &[f64],
+    dx: &[f64],
+    plate: f64,
+) -> Result<f64, EvalError> {
+    integrate_along(mesh, x, dx, plate, |at, x, d| {
+        let s = x.s[0];
+        -(s * (x.z[1] * d.s[0] + s * d.z[1] * 0.5) * at.weight)
+    })
+}
+
 /// Adds to `out` the gradient over the unknowns of the integral whose pointwise gradient is `f`.
 ///
 /// # Errors
 /// When the state is not admissible.
 pub fn add_gradient(
-    mesh: &Mesh,
+    mesh: &impl HalfMeridian,
     x: &[f64],
     plate: f64,
     out: &mut [f64],
@@ -311,7 +365,7 @@ pub fn add_gradient(
 /// When the state is not admissible.
 #[allow(clippy::too_many_arguments)] // state, model and the two results
 pub fn add_linearisation<L: Membrane, F: Potential>(
-    mesh: &Mesh,
+    mesh: &impl HalfMeridian,
     x: &[f64],
     law: &L,
     film: &F,

@@ -3,6 +3,7 @@
 //! Gauss points are kept in groups of four (one [`Lanes`] each); an element with a count that is
 //! no multiple of four is filled up with copies of its last point of weight zero.
 
+use crate::half::HalfMeridian;
 use crate::params::ParameterError;
 use crate::quadrature::{FEWEST, MOST, gauss_legendre};
 use crate::scalar::{Lanes, WIDTH};
@@ -48,6 +49,17 @@ pub struct Local {
 }
 
 impl Local {
+    /// From the four coefficients of `u` and of `w`.
+    #[inline(always)]
+    pub(crate) fn new((mut u, mut w): ([f64; 4], [f64; 4])) -> Local {
+        let (u_base, w_base) = (u[1], w[1]);
+        for k in 0..4 {
+            u[k] -= u_base;
+            w[k] -= w_base;
+        }
+        Local { u, w, u_base, w_base }
+    }
+
     /// The coefficients of `u` and of `w` as differences to the second one, and that one.
     pub(crate) fn parts(&self) -> [([f64; 4], f64); 2] {
         [(self.u, self.u_base), (self.w, self.w_base)]
@@ -60,10 +72,14 @@ impl Local {
         self.w_base + max(max(self.w[0], self.w[2]), max(self.w[3], 0.0))
     }
 
-    fn displacement(&self, basis: &Basis, k: usize) -> (f64, f64) {
-        let dot = |c: &[f64; 4]| (0..4).map(|j| basis[k][j] * c[j]).sum::<f64>();
-        let base = if k == 0 { (self.u_base, self.w_base) } else { (0.0, 0.0) };
-        (base.0 + dot(&self.u), base.1 + dot(&self.w))
+    /// `(u, w)` and three derivatives where the functions have the values `basis`.
+    pub(crate) fn displacement(&self, basis: &Basis) -> [(f64, f64); 4] {
+        let derivative = |k: usize| {
+            let dot = |c: &[f64; 4]| (0..4).map(|j| basis[k][j] * c[j]).sum::<f64>();
+            let base = if k == 0 { (self.u_base, self.w_base) } else { (0.0, 0.0) };
+            (base.0 + dot(&self.u), base.1 + dot(&self.w))
+        };
+        [0, 1, 2, 3].map(derivative)
     }
 }
 
@@ -233,20 +249,7 @@ impl Mesh {
 
     fn assemble_mass(&mut self) {
         let mut mass = SymmetricBand::new(self.unknowns(), HALF_BANDWIDTH);
-        for e in 0..self.elements() {
-            let mut local = [[0.0; 8]; 8];
-            for cell in self.cells(e) {
-                let area = cell.weight * cell.sin;
-                for i in 0..4 {
-                    for j in 0..=i {
-                        let m = (area * cell.basis[0][i] * cell.basis[0][j]).sum();
-                        local[2 * j][2 * i] += m;
-                        local[2 * j + 1][2 * i + 1] += m;
-                    }
-                }
-            }
-            self.scatter_matrix(e, &local, &mut mass);
-        }
+        add_mass(self, 1.0, &mut mass);
         self.mass = mass;
     }
 
@@ -291,31 +294,17 @@ impl Mesh {
     /// The coefficients element `e` sees.
     #[inline(always)]
     pub fn local(&self, x: &[f64], e: usize) -> Local {
-        let (mut u, mut w) = self.knots.gather(x, e);
-        let (u_base, w_base) = (u[1], w[1]);
-        for k in 0..4 {
-            u[k] -= u_base;
-            w[k] -= w_base;
-        }
-        Local { u, w, u_base, w_base }
+        Local::new(self.knots.gather(x, e))
     }
 
     /// The deformed meridian at any `S`.
     pub fn place(&self, x: &[f64], s: f64) -> Place<f64> {
-        let e = self.knots.element_of(s);
-        let d = self.displacement_in(x, e, s);
-        let (sin, cos) = s.sin_cos();
-        Place {
-            s: [sin + d[0].0, cos + d[1].0, d[2].0 - sin],
-            z: [cos + d[0].1, d[1].1 - sin, d[2].1 - cos],
-        }
+        HalfMeridian::place(self, x, s)
     }
 
     /// `(u, w)` and three derivatives at `S` in element `e`.
     pub fn displacement_in(&self, x: &[f64], e: usize, s: f64) -> [(f64, f64); 4] {
-        let local = self.local(x, e);
-        let basis = self.knots.basis(e, s);
-        [0, 1, 2, 3].map(|k| local.displacement(&basis, k))
+        HalfMeridian::displacement_in(self, x, e, s)
     }
 
     /// Adds the element vector `local` (ordered `u, w` by function) to `out`.
@@ -369,6 +358,24 @@ impl Mesh {
     fn slot(&self, e: usize, k: usize) -> Option<(usize, f64)> {
         let component = if k.is_multiple_of(2) { Component::U } else { Component::W };
         self.knots.slot(component, e as isize - 1 + (k / 2) as isize)
+    }
+}
+
+/// Adds `factor ∫(u² + w²) sin S dS` over a half, as a matrix over the unknowns.
+pub(crate) fn add_mass(half: &impl HalfMeridian, factor: f64, out: &mut SymmetricBand) {
+    for e in 0..half.elements() {
+        let mut local = [[0.0; 8]; 8];
+        for cell in half.cells(e) {
+            let area = cell.weight * cell.sin;
+            for i in 0..4 {
+                for j in 0..=i {
+                    let m = factor * (area * cell.basis[0][i] * cell.basis[0][j]).sum();
+                    local[2 * j][2 * i] += m;
+                    local[2 * j + 1][2 * i + 1] += m;
+                }
+            }
+        }
+        half.scatter_matrix(e, &local, out);
     }
 }
 

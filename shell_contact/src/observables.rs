@@ -8,7 +8,9 @@ use crate::contact::{ContactProblem, with_law};
 use crate::density::Coefficients;
 use crate::energy;
 use crate::film::Potential;
+use crate::half::HalfMeridian;
 use crate::membrane::tensions;
+use crate::plate;
 use continuation::EvalError;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -73,19 +75,6 @@ impl Observation {
     }
 }
 
-/// `∂E/∂z_p = ∫w_int'(δ) σ a dS`.
-pub(crate) fn plate_pull<F: Potential>(
-    problem: &ContactProblem<F>,
-    u: &[f64],
-    c: &Coefficients,
-) -> Result<f64, EvalError> {
-    energy::integrate(&problem.mesh, u, c.plate, |at, x| {
-        let a = crate::scalar::Scalar::sqrt(x.s[1] * x.s[1] + x.z[1] * x.z[1]);
-        let f = problem.potential.jet(-(x.z[0] - c.plate), c.adhesion, c.film);
-        f.d1 * x.s[0] * a * at.weight
-    })
-}
-
 pub(crate) fn observe<F: Potential>(
     problem: &ContactProblem<F>,
     u: &[f64],
@@ -104,7 +93,7 @@ pub(crate) fn observe<F: Potential>(
     ]
     .map(|e| whole * e);
     Ok(Observation {
-        force: -2.0 * PI / c.bending.sqrt() * plate_pull(problem, u, &c)?,
+        force: plate::force_factor(c.bending) * plate::pull(mesh, &problem.potential, u, &c)?,
         pole_height: 1.0 + mesh.displacement_in(u, 0, 0.0)[0].1,
         gas_pressure: gas.pressure(parts.volume),
         volume: whole * parts.volume,
@@ -114,13 +103,12 @@ pub(crate) fn observe<F: Potential>(
         energy_film: energies[2],
         energy_gas: energies[3],
         energy_surface: energies[4],
-        contact_radius: contact_radius(problem, u, &c),
+        contact_radius: contact_radius(mesh, u, &c),
     })
 }
 
 /// `σ` where the film is `δ_A` high for the last time on the way from the pole.
-fn contact_radius<F: Potential>(problem: &ContactProblem<F>, u: &[f64], c: &Coefficients) -> f64 {
-    let mesh = &problem.mesh;
+pub(crate) fn contact_radius(mesh: &impl HalfMeridian, u: &[f64], c: &Coefficients) -> f64 {
     let knots = mesh.knots();
     let thin = |s: f64| c.plate - mesh.place(u, s).z[0] < c.film;
     let mut outside = FRAC_PI_2;
@@ -173,27 +161,30 @@ pub struct Profile {
     pub tension_phi: Vec<f64>,
 }
 
-impl<F: Potential> ContactProblem<F> {
-    /// The meridian at `samples ≥ 2` equally spaced reference angles, pole and equator included.
-    ///
-    /// # Errors
-    /// When the state is not admissible.
-    pub fn profile(&self, u: &[f64], p: &[f64], samples: usize) -> Result<Profile, EvalError> {
-        let (c, _) = self.coefficients(u, p)?;
-        energy::admissible(&self.mesh, u, c.plate)?;
+impl Profile {
+    /// A half at `samples ≥ 2` equally spaced reference angles, pole and equator included;
+    /// `tensions` gives those of two stretches. The state is one that was found admissible.
+    pub(crate) fn of<F: Potential>(
+        half: &impl HalfMeridian,
+        film: &F,
+        u: &[f64],
+        c: &Coefficients,
+        samples: usize,
+        tensions: impl Fn(f64, f64) -> (f64, f64),
+    ) -> Profile {
         let samples = samples.max(2);
         let mut profile = Profile::default();
         for i in 0..samples {
             let angle = FRAC_PI_2 * i as f64 / (samples - 1) as f64;
-            let place = self.mesh.place(u, angle);
+            let place = half.place(u, angle);
             let ([s, s1, _], [z, z1, _]) = (place.s, place.z);
             let stretch_s = s1.hypot(z1);
             // at the pole both stretches are σ'
             let stretch_phi = if i == 0 { stretch_s } else { s / angle.sin() };
             let delta = c.plate - z;
             // per unit adhesion, so that Π̂ is defined without any
-            let (_, d1) = self.potential.by_adhesion(delta, c.adhesion, c.film);
-            let (tau_s, tau_phi) = with_law!(self, |law| tensions(&law, stretch_s, stretch_phi));
+            let (_, d1) = film.by_adhesion(delta, c.adhesion, c.film);
+            let (tau_s, tau_phi) = tensions(stretch_s, stretch_phi);
             profile.angle.push(angle);
             profile.sigma.push(s);
             profile.z.push(z);
@@ -202,6 +193,19 @@ impl<F: Potential> ContactProblem<F> {
             profile.tension_s.push(tau_s);
             profile.tension_phi.push(tau_phi);
         }
-        Ok(profile)
+        profile
+    }
+}
+
+impl<F: Potential> ContactProblem<F> {
+    /// The meridian at `samples ≥ 2` equally spaced reference angles, pole and equator included.
+    ///
+    /// # Errors
+    /// When the state is not admissible.
+    pub fn profile(&self, u: &[f64], p: &[f64], samples: usize) -> Result<Profile, EvalError> {
+        let (c, _) = self.coefficients(u, p)?;
+        energy::admissible(&self.mesh, u, c.plate)?;
+        let tensions = |s, phi| with_law!(self, |law| tensions(&law, s, phi));
+        Ok(Profile::of(&self.mesh, &self.potential, u, &c, samples, tensions))
     }
 }

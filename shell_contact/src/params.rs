@@ -41,6 +41,21 @@ impl ParameterError {
         }
     }
 
+    /// The same of a parameter that goes by another name: those of `from` become those of `to`.
+    pub(crate) fn renamed<const N: usize>(
+        self,
+        from: [&str; N],
+        to: [&'static str; N],
+    ) -> ParameterError {
+        let at = from.iter().position(|name| *name == self.key());
+        match (self, at) {
+            (ParameterError::OutOfRange { value, allowed, remedy, .. }, Some(k)) => {
+                ParameterError::OutOfRange { key: to[k], value, allowed, remedy }
+            }
+            (other, _) => other,
+        }
+    }
+
     /// Name of the offending parameter, as in a case file.
     pub fn key(&self) -> &'static str {
         match self {

@@ -2,6 +2,7 @@
 
 use continuation::linalg::Bordered;
 use continuation::{ParamId, Problem, Settings, Tracer, Watch};
+use shell_contact::two_plates::{Support, SupportedProblem, TwoPlatesGroups, TwoPlatesProblem};
 use shell_contact::{ContactProblem, Dimensionless, Law, Mesh, Shell};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -22,12 +23,8 @@ fn fig12(elements: usize) -> ContactProblem {
     ContactProblem::new(&shell, &groups, Mesh::uniform(elements).unwrap()).unwrap()
 }
 
-// one test: other threads of the test runner would be counted too
-#[test]
-fn the_loop_does_not_allocate() {
-    let problem = fig12(200);
+fn iterations_do_not_allocate<P: Problem>(problem: &P, u: &[f64], p: &[f64]) {
     let n = problem.dim();
-    let (u, p) = (problem.initial_state(), problem.parameters_at(1.1));
     let mut jacobian = problem.new_jacobian();
     let mut bordered = Bordered::new(n, 1);
     let (mut r, mut m) = (vec![0.0; n], vec![0.0; n]);
@@ -35,19 +32,35 @@ fn the_loop_does_not_allocate() {
 
     let region = Region::new(ALLOCATOR);
     for _ in 0..5 {
-        problem.linearise(&u, &p, &mut r, &mut jacobian).unwrap();
-        problem.parameter_derivative(&u, &p, ParamId(0), bordered.column_mut(0)).unwrap();
+        problem.linearise(u, p, &mut r, &mut jacobian).unwrap();
+        problem.parameter_derivative(u, p, ParamId(0), bordered.column_mut(0)).unwrap();
         problem.metric(&r, &mut m);
         bordered.row_mut(0).copy_from_slice(&m);
         bordered.set_corner(0, 0, 1.0);
         bordered.factor(&mut jacobian);
         let mut g = [0.5];
         bordered.solve(&mut jacobian, &mut r, &mut g);
-        problem.observe(&u, &p, &mut observed).unwrap();
-        problem.observable_slope(0, &u, &p, ParamId(0), &r, 1.0).unwrap();
+        problem.observe(u, p, &mut observed).unwrap();
+        problem.observable_slope(0, u, p, ParamId(0), &r, 1.0).unwrap();
     }
     let change = region.change();
     assert_eq!(change.allocations + change.reallocations, 0, "{change:?}");
+}
+
+// one test: other threads of the test runner would be counted too
+#[test]
+fn the_loop_does_not_allocate() {
+    let problem = fig12(200);
+    let (u, p) = (problem.initial_state(), problem.parameters_at(1.1));
+    iterations_do_not_allocate(&problem, &u, &p);
+    let groups = TwoPlatesGroups::equal(problem.groups());
+    let mesh = problem.mesh().clone();
+    let whole = TwoPlatesProblem::new(problem.shell(), &groups, mesh).unwrap();
+    iterations_do_not_allocate(&whole, &whole.initial_state(), &whole.parameters_at(1.1));
+    let support = Support { held: true, spring: Some(30.0) };
+    let supported = SupportedProblem::new(&whole, support).unwrap();
+    let x = supported.state(&whole.initial_state(), 1.1);
+    iterations_do_not_allocate(&supported, &x, &supported.parameters_at(1.1));
 
     // a traced point costs its own storage and nothing per iteration: two vectors, and now and
     // then room for more points, special points and their names

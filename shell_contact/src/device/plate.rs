@@ -1,11 +1,10 @@
 //! The contact problem as the plate sees it: energy, pull and stiffness.
 
 use super::{Device, Loading};
-use crate::contact::{ContactProblem, parameter, with_law};
+use crate::contact::{ContactProblem, parameter, variable, with_law};
 use crate::energy;
 use crate::film::Potential;
-use crate::observables;
-use crate::scalar::{Lanes, Scalar};
+use crate::plate;
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId};
 use std::f64::consts::PI;
@@ -29,7 +28,7 @@ impl<F: Potential> ContactProblem<F> {
     /// When the state is not admissible.
     pub fn plate_pull(&self, u: &[f64], p: &[f64]) -> Result<f64, EvalError> {
         let (c, _) = self.coefficients(u, p)?;
-        observables::plate_pull(self, u, &c)
+        plate::pull(&self.mesh, &self.potential, u, &c)
     }
 
     /// Partial derivative of [`Self::plate_pull`] by a parameter at a fixed shell; by `z0` it is the
@@ -39,18 +38,10 @@ impl<F: Potential> ContactProblem<F> {
     /// When the state is not admissible.
     pub fn plate_pull_by(&self, u: &[f64], p: &[f64], which: ParamId) -> Result<f64, EvalError> {
         let (c, _) = self.coefficients(u, p)?;
-        let film = &self.potential;
-        energy::integrate(&self.mesh, u, c.plate, |at, x| {
-            let a = (x.s[1] * x.s[1] + x.z[1] * x.z[1]).sqrt();
-            let delta = -(x.z[0] - c.plate);
-            let slope = match which {
-                parameter::Z0 => film.jet(delta, c.adhesion, c.film).d2,
-                parameter::ADHESION => film.by_adhesion(delta, c.adhesion, c.film).1,
-                parameter::FILM => film.by_length(delta, c.adhesion, c.film).1,
-                _ => Lanes::constant(0.0),
-            };
-            slope * x.s[0] * a * at.weight
-        })
+        match variable(which) {
+            Some(variable) => plate::pull_by(&self.mesh, &self.potential, u, &c, variable),
+            None => energy::admissible(&self.mesh, u, c.plate).map(|()| 0.0),
+        }
     }
 
     /// The parameters of this problem with other values of all but the first, and the plate at
