@@ -13,6 +13,7 @@ pub(crate) mod reader;
 pub(crate) mod resolve;
 pub(crate) mod source;
 mod stability;
+mod two_plates;
 mod write;
 
 #[cfg(test)]
@@ -72,6 +73,8 @@ impl Default for StabilityCase {
 pub(crate) enum ProblemCase {
     /// A coated microbubble between two plates; the parameter is the plate distance `z0`.
     Contact(ContactCase),
+    /// The same from pole to pole, between plates of their own.
+    TwoPlates(TwoPlatesCase),
     /// A shell under a ring load; the parameter is the contact angle `alpha` in degrees.
     RingLoad(RingLoadCase),
     /// A problem of the catalogue, by name.
@@ -91,6 +94,46 @@ pub(crate) struct ContactCase {
     pub(crate) mesh: MeshCase,
     /// What holds the plates.
     pub(crate) device: DeviceCase,
+}
+
+/// A microbubble from pole to pole between two plates.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TwoPlatesCase {
+    /// The shell's material.
+    pub(crate) shell: ShellCase,
+    /// `k_b / (chi R0²)`.
+    pub(crate) bending: f64,
+    /// `P_A R0 / chi`.
+    pub(crate) pressure: f64,
+    /// `gamma_BW / chi`.
+    pub(crate) surface_tension: f64,
+    /// The polytropic exponent of the gas.
+    pub(crate) gas_exponent: f64,
+    /// The upper plate and the lower; `None` for one that is not there.
+    pub(crate) plates: [Option<PlateCase>; 2],
+    /// Whether the equator is held in the mid-plane.
+    pub(crate) held: bool,
+    /// The mesh of either half.
+    pub(crate) mesh: MeshCase,
+}
+
+impl TwoPlatesCase {
+    /// Name of the continued parameter: half the distance of the plates, or the base of a spring.
+    pub(crate) fn parameter(&self) -> &'static str {
+        let [top, _] = self.plates;
+        if top.is_some_and(|plate| plate.stiffness.is_some()) { "base" } else { "z0" }
+    }
+}
+
+/// One of two plates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PlateCase {
+    /// `w0 / chi`.
+    pub(crate) adhesion: f64,
+    /// `delta_A / R0`.
+    pub(crate) film: f64,
+    /// `k_c` of the cantilever that it hangs on, in `sqrt(chi k_b)/R0`; rigid without one.
+    pub(crate) stiffness: Option<f64>,
 }
 
 /// A shell under a ring load.

@@ -36,8 +36,11 @@ const DIAGRAM: &[&str] = &["depth", "max_branches", "from", "to", "search"];
 const SEARCH: [&str; 2] = ["near-bifurcations", "none"];
 const MAP: &[&str] = &["from", "to"];
 
+/// The problems that are no entries of the catalogue.
+pub(super) const BUILT_IN: [&str; 3] = ["contact", "two-plates", "ring-load"];
+
 /// Where a key may be at home, for those that stand in the wrong table.
-const HOMES: &[(&str, &[&str])] = &[
+pub(super) const HOMES: &[(&str, &[&str])] = &[
     ("shell", SHELL),
     ("dimensionless", DIMENSIONLESS),
     ("physical", PHYSICAL),
@@ -62,7 +65,7 @@ const POISSON_SKALAK: Allowed =
 const FRACTION: Allowed = Allowed { holds: |x| (0.0..=1.0).contains(&x), words: "from 0 to 1" };
 const GRADING: Allowed =
     Allowed { holds: |x| (1.0..=1000.0).contains(&x), words: "from 1 (uniform) to 1000" };
-const CONTACT_START: Allowed = Allowed {
+pub(super) const CONTACT_START: Allowed = Allowed {
     holds: |x| x > 1.0,
     words: "greater than 1: a contact case starts above the free shell, of radius 1",
 };
@@ -89,9 +92,9 @@ pub(crate) fn resolve(
     }
 }
 
-struct Resolver<'a> {
-    reader: &'a Reader,
-    root: Section<'a>,
+pub(super) struct Resolver<'a> {
+    pub(super) reader: &'a Reader,
+    pub(super) root: Section<'a>,
     notes: Vec<String>,
     catalogue: &'a [CatalogueEntry],
 }
@@ -108,7 +111,7 @@ impl<'a> Resolver<'a> {
             None => Some(default_name.to_string()),
             Some(_) => own_name(self.reader, self.root).map(str::to_string),
         };
-        let known: Vec<&str> = ["contact", "ring-load"]
+        let known: Vec<&str> = BUILT_IN
             .into_iter()
             .chain(self.catalogue.iter().map(|entry| entry.name.as_str()))
             .collect();
@@ -119,6 +122,7 @@ impl<'a> Resolver<'a> {
         let problem = self.reader.text(self.root, "problem")?;
         let (problem, path) = match problem {
             "contact" => self.contact(),
+            "two-plates" => self.two_plates(),
             "ring-load" => self.ring_load(),
             other => match self.catalogue.iter().find(|entry| entry.name == other) {
                 Some(entry) => self.entry(entry),
@@ -262,7 +266,7 @@ impl<'a> Resolver<'a> {
         (problem, path)
     }
 
-    fn shell(&mut self) -> Option<ShellCase> {
+    pub(super) fn shell(&mut self) -> Option<ShellCase> {
         let section = self.table("shell", SHELL);
         if section.get("law").is_none() {
             let hint = format!("give the law of the membrane: {}", Law::NAMES.join(", "));
@@ -299,20 +303,27 @@ impl<'a> Resolver<'a> {
         Some(ShellCase { law, poisson: poisson? })
     }
 
-    fn groups(&self, section: Section<'_>) -> Option<Groups> {
+    /// `bending`, `pressure`, `surface_tension` and `gas_exponent`.
+    pub(super) fn groups_without_film(&self, section: Section<'_>) -> Option<[f64; 4]> {
         let bending = self.reader.required(section, "bending", POSITIVE);
         let pressure = self.reader.required(section, "pressure", NOT_NEGATIVE);
-        let adhesion = self.reader.required(section, "adhesion", POSITIVE);
-        let film = self.reader.required(section, "film", POSITIVE);
         let surface_tension = self.or(section, "surface_tension", NOT_NEGATIVE, 0.0);
         let gas_exponent = self.or(section, "gas_exponent", NOT_NEGATIVE, GAS_EXPONENT);
+        Some([bending?, pressure?, surface_tension?, gas_exponent?])
+    }
+
+    fn groups(&self, section: Section<'_>) -> Option<Groups> {
+        let others = self.groups_without_film(section);
+        let adhesion = self.reader.required(section, "adhesion", POSITIVE);
+        let film = self.reader.required(section, "film", POSITIVE);
+        let [bending, pressure, surface_tension, gas_exponent] = others?;
         Some(Groups {
-            bending: bending?,
-            pressure: pressure?,
+            bending,
+            pressure,
             adhesion: adhesion?,
             film: film?,
-            surface_tension: surface_tension?,
-            gas_exponent: gas_exponent?,
+            surface_tension,
+            gas_exponent,
         })
     }
 
@@ -406,7 +417,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    fn mesh(&self) -> Option<MeshCase> {
+    pub(super) fn mesh(&self) -> Option<MeshCase> {
         let section = self.table("mesh", MESH);
         let elements = self.elements(section, ELEMENTS);
         let grading =
@@ -428,7 +439,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    fn path(
+    pub(super) fn path(
         &self,
         default: Option<(f64, f64)>,
         start_range: Allowed,

@@ -2,7 +2,7 @@
 
 use super::document::{self, Override};
 use super::name::plain_name;
-use super::resolve::resolve;
+use super::resolve::{BUILT_IN, resolve};
 use super::{CatalogueEntry, LoadError, LoadedCase};
 use crate::closest::closest;
 use std::fs::File;
@@ -18,6 +18,7 @@ pub(crate) const SHIPPED: &[(&str, &str)] = &[
     ("cantilever", include_str!("../../../cases/cantilever.toml")),
     ("polymer", include_str!("../../../cases/polymer.toml")),
     ("ring-load", include_str!("../../../cases/ring-load.toml")),
+    ("two-plates", include_str!("../../../cases/two-plates.toml")),
 ];
 
 /// The sweeps that come with the program, likewise.
@@ -40,7 +41,7 @@ pub(crate) fn load(
     if let Some((name, text)) = SHIPPED.iter().chain(SWEEPS).find(|(name, _)| *name == word) {
         return load_text(name, name, text, overrides, catalogue);
     }
-    let built_in = ["contact", "ring-load"].contains(&word.as_ref());
+    let built_in = BUILT_IN.contains(&word.as_ref());
     if built_in || catalogue.iter().any(|entry| entry.name == word) {
         let text = format!("problem = \"{word}\"\n");
         return load_text(&word, &word, &text, overrides, catalogue);

@@ -1,8 +1,9 @@
 //! A resolved case as a case file again: everything written out, nothing left to defaults.
 
+use super::two_plates::{DEVICES, EQUATOR};
 use super::{
     ContactCase, DiagramCase, Groups, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase,
-    ShellCase, StabilityCase,
+    ShellCase, StabilityCase, TwoPlatesCase,
 };
 use super::{Law, PhysicalCase, Stiffness};
 use std::fmt::Write as _;
@@ -15,6 +16,7 @@ impl ResolvedCase {
         out.text("name", &self.name);
         match &self.problem {
             ProblemCase::Contact(case) => contact(&mut out, case),
+            ProblemCase::TwoPlates(case) => two_plates(&mut out, case),
             ProblemCase::RingLoad(case) => {
                 out.text("problem", "ring-load");
                 shell(&mut out, case.shell);
@@ -69,6 +71,28 @@ fn contact(out: &mut Lines, case: &ContactCase) {
     if let Some(stiffness) = case.device.stiffness() {
         out.number("stiffness", stiffness);
     }
+}
+
+fn two_plates(out: &mut Lines, case: &TwoPlatesCase) {
+    out.text("problem", "two-plates");
+    out.text("equator", EQUATOR[usize::from(case.held)]);
+    shell(out, case.shell);
+    out.table("dimensionless");
+    out.number("bending", case.bending);
+    out.number("pressure", case.pressure);
+    out.number("surface_tension", case.surface_tension);
+    out.number("gas_exponent", case.gas_exponent);
+    for (name, plate) in ["plate.top", "plate.bottom"].into_iter().zip(case.plates) {
+        let Some(plate) = plate else { continue };
+        out.table(name);
+        out.number("adhesion", plate.adhesion);
+        out.number("film", plate.film);
+        out.text("device", DEVICES[usize::from(plate.stiffness.is_some())]);
+        if let Some(stiffness) = plate.stiffness {
+            out.number("stiffness", stiffness);
+        }
+    }
+    mesh(out, case.mesh);
 }
 
 fn shell(out: &mut Lines, shell: ShellCase) {

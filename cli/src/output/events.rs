@@ -50,6 +50,9 @@ impl Serialize for StabilityOf<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("scan", if self.0.full { "full" } else { "axisymmetric" })?;
+        if self.0.both_parities {
+            map.serialize_entry("parities", &["symmetric", "antisymmetric"])?;
+        }
         if self.0.full {
             map.serialize_entry("max_n", &self.0.max_n)?;
             map.serialize_entry("certain", &self.0.certain)?;

@@ -264,6 +264,8 @@ pub(crate) struct ModeRecord {
 pub(crate) struct StabilityRecord {
     /// Whether more than axisymmetric mirror images.
     pub(crate) full: bool,
+    /// Whether axisymmetric modes that break the mirror symmetry are among the branch's own.
+    pub(crate) both_parities: bool,
     /// The most waves that were examined.
     pub(crate) max_n: Option<usize>,
     /// Whether every count is certain.
@@ -276,6 +278,9 @@ impl StabilityRecord {
     /// What was examined, in sentences.
     pub(super) fn text(&self) -> String {
         let mut text = match (self.full, self.certain) {
+            (false, _) if self.both_parities => {
+                "stability: against axisymmetric modes only, with and without mirror symmetry\n"
+            }
             (false, _) => "stability: against axisymmetric mirror images only\n",
             (true, Some(true)) => "stability: with and without symmetry, torsion left out\n",
             (true, _) => {
@@ -294,6 +299,7 @@ impl StabilityRecord {
     pub(super) fn and(self, other: &StabilityRecord) -> StabilityRecord {
         StabilityRecord {
             full: self.full && other.full,
+            both_parities: self.both_parities && other.both_parities,
             max_n: self.max_n.max(other.max_n),
             certain: self.certain.zip(other.certain).map(|(a, b)| a && b),
             not_located: self.not_located + other.not_located,

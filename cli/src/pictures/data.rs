@@ -33,6 +33,8 @@ pub(crate) enum Examined {
     All,
     /// Of a shell, axisymmetric mirror images.
     Axisymmetric,
+    /// Of a shell, those and the axisymmetric ones that are none.
+    AxisymmetricBothParities,
     /// Of a shell, those and the others.
     AxisymmetricAndOthers,
 }
@@ -68,7 +70,8 @@ pub(crate) struct Mark {
     pub(crate) y: f64,
 }
 
-/// A deformed meridian: the upper half of the cross-section, from pole to equator.
+/// A deformed meridian: the upper half of the cross-section, from pole to equator, of which the
+/// lower is the mirror image; or with a plate below, all of it from pole to pole.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Shape {
     /// What it is, for the legend.
@@ -79,6 +82,8 @@ pub(crate) struct Shape {
     pub(crate) z: Vec<f64>,
     /// Height of the plate, in R0; NaN without one.
     pub(crate) plate: f64,
+    /// Height of the lower plate of a shell that is not its own mirror image.
+    pub(crate) plate_below: Option<f64>,
     /// Whether the state is stable.
     pub(crate) stability: Stability,
 }

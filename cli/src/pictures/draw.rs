@@ -107,7 +107,9 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
     let mut legend = Vec::new();
     for (at, shape) in shapes.iter().enumerate() {
         let color = of_state(at);
-        for (right, up) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
+        let mirrored = shape.plate_below.is_none();
+        let signs = [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];
+        for (right, up) in signs.into_iter().take(if mirrored { 4 } else { 2 }) {
             let curve = Curve {
                 x: shape.sigma.iter().map(|sigma| right * sigma).collect(),
                 y: shape.z.iter().map(|z| up * z).collect(),
@@ -115,7 +117,8 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
             };
             lines.extend(curve_lines(&curve, color, units));
         }
-        for plate in [shape.plate, -shape.plate].into_iter().filter(|z| drawable(*z)) {
+        let below = shape.plate_below.unwrap_or(-shape.plate);
+        for plate in [shape.plate, below].into_iter().filter(|z| drawable(*z)) {
             let ends = [-0.97 * wide, 0.97 * wide];
             let points = ends.map(|end| (end / units.0, plate / units.1)).to_vec();
             lines.push(Line { points, color, width: 1, stroke: Stroke::Solid });
@@ -223,9 +226,12 @@ fn stability_entries(curves: &[Curve], color: Color) -> Vec<Entry> {
             entries.push(Entry::Line { color, stroke, label });
         }
     }
-    if examined == Examined::Axisymmetric {
-        entries.push(Entry::Note { label: "asymmetric modes not examined".to_owned() });
-    }
+    let left_out = match examined {
+        Examined::Axisymmetric => "asymmetric modes not examined",
+        Examined::AxisymmetricBothParities => "modes cos nφ not examined",
+        Examined::All | Examined::AxisymmetricAndOthers => return entries,
+    };
+    entries.push(Entry::Note { label: left_out.to_owned() });
     entries
 }
 

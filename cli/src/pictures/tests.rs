@@ -72,6 +72,7 @@ pub(crate) fn two_folds() -> Pictures {
                 sigma,
                 z,
                 plate,
+                plate_below: None,
                 stability: Stability::of(*unstable, false),
             }
         })

@@ -363,6 +363,7 @@ fn pictures(
             sigma: profile.sigma.clone(),
             z: profile.z,
             plate: z0,
+            plate_below: None,
             stability: state,
         });
         film_pressure.push(Profile {
@@ -397,10 +398,10 @@ fn pictures(
 }
 
 /// A column of the table.
-type Column<'c> = dyn Fn(&ContactRow) -> f64 + 'c;
+pub(super) type Column<'c> = dyn Fn(&ContactRow) -> f64 + 'c;
 
 /// One column over another, with the special points that are drawn.
-fn drawn(
+pub(super) fn drawn(
     traced: &ContactBranch,
     stability: &Stability,
     rows: &[ContactRow],
@@ -441,7 +442,7 @@ pub(super) fn on_diagram(
 
 /// Points to draw: the first zero of the force, and three more, evenly spaced up to the end of
 /// the branch in the number of radii that the plate has come.
-fn chosen(rows: &[ContactRow]) -> Vec<usize> {
+pub(super) fn chosen(rows: &[ContactRow]) -> Vec<usize> {
     let Some(last) = rows.len().checked_sub(1) else { return Vec::new() };
     let first = rows.iter().position(|r| r.event == "zero-force").unwrap_or(0);
     let mut travelled = vec![0.0];

@@ -25,6 +25,9 @@ pub(crate) fn run_cycle(
     let name = case.name.clone();
     let contact = match &case.problem {
         ProblemCase::Contact(contact) => contact,
+        ProblemCase::TwoPlates(_) => {
+            return Err(RunError::MirrorOnly { case: name, command: "arclen cycle" });
+        }
         ProblemCase::RingLoad(_) => {
             return Err(RunError::NoPlates { case: name, problem: "ring-load".to_owned() });
         }
@@ -248,6 +251,7 @@ fn pictures(
                 sigma: profile.sigma,
                 z: profile.z,
                 plate: point.z0,
+                plate_below: None,
                 stability: Stability::Stable,
             })
         };

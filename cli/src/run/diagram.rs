@@ -1,7 +1,8 @@
 //! Whole diagrams, of every kind of problem.
 
 use super::stability::Stability;
-use super::{RunError, contact, general, ring_load, stability, states};
+use super::two_plates::{BetweenPlates, WithPlates};
+use super::{RunError, contact, general, ring_load, stability, states, two_plates};
 use crate::case::{ProblemCase, ResolvedCase};
 use crate::output::{BranchRecord, DiagramResult, From, NearRecord, TraceResult};
 use crate::pictures::{Curve, Mark};
@@ -109,6 +110,21 @@ impl Visitor for Exploration<'_, '_> {
     }
 }
 
+impl WithPlates for Exploration<'_, '_> {
+    type Output = Result<(Diagram, f64), DiagramError>;
+
+    fn with<P: BetweenPlates>(self, problem: &P, x: &[f64], p: &[f64]) -> Self::Output {
+        let setup = Setup {
+            parameter: problem.parameters()[0].name,
+            u: x.to_vec(),
+            p: p.to_vec(),
+            settings: Settings::default(),
+            watches: force_watches().to_vec(),
+        };
+        self.run(problem, &setup)
+    }
+}
+
 /// Explore the diagram of a case, from what was kept of it; `reported` also takes the states along
 /// the branches, for a report.
 ///
@@ -171,6 +187,23 @@ pub(crate) fn run_diagram(
             });
             let seconds = explored.seconds + scanning.elapsed().as_secs_f64();
             Ok(DiagramResult { seconds, ..explored })
+        }
+        ProblemCase::TwoPlates(plates) => {
+            let name = plates.parameter();
+            let exploration = explore(two_plates::settings(case, name), keep, observer);
+            let explored = two_plates::visit(case, plates, exploration)?;
+            let (diagram, seconds) = explored.map_err(|error| match error {
+                DiagramError::Trace(detail) => contact::no_start(case, detail),
+                error => RunError::Diagram { case: case.name.clone(), error },
+            })?;
+            let x = if name == "z0" { "half the plate distance z₀/R₀" } else { name };
+            let mut zero = None;
+            Ok(result(case, diagram, seconds, (x, "force F/√(χ k_b)"), &mut |branch| {
+                let traced = ContactBranch::new(branch, zero);
+                zero = traced.zero_force;
+                let (trace, curve) = two_plates::on_diagram(case, &traced);
+                Presented { trace, curve, stability: Stability::default() }
+            }))
         }
         ProblemCase::RingLoad(ring) => {
             let ring_load::Start { problem, u, p } = ring_load::start(case, ring)?;

@@ -11,6 +11,7 @@ mod ring_load;
 mod stability;
 mod states;
 mod sweep;
+mod two_plates;
 mod ways;
 
 pub(crate) use contact::{branch as contact_branch, result as contact_result};
@@ -97,6 +98,17 @@ pub(crate) enum RunError {
         /// The device.
         device: &'static str,
     },
+    /// A command that sees mirror-symmetric states only.
+    #[error(
+        "{case}: problem \"two-plates\": {command} knows mirror-symmetric states only: \
+         problem = \"contact\", with adhesion and film in [dimensionless]"
+    )]
+    MirrorOnly {
+        /// Name of the case.
+        case: String,
+        /// What was asked for.
+        command: &'static str,
+    },
     /// A problem without plates.
     #[error("{case}: problem \"{problem}\": a cycle needs plates: problem = \"contact\"")]
     NoPlates {
@@ -145,6 +157,7 @@ pub(crate) fn run_trace(
 ) -> Result<TraceResult, RunError> {
     match &case.problem {
         ProblemCase::Contact(contact) => contact::run(case, contact, observer),
+        ProblemCase::TwoPlates(plates) => two_plates::run(case, plates, observer),
         ProblemCase::RingLoad(ring) => ring_load::run(case, ring, false, observer),
         ProblemCase::Catalogue(problem) => general::run(case, problem, observer),
     }
@@ -161,7 +174,7 @@ pub(crate) fn run_trace_reported(
     match &case.problem {
         ProblemCase::Contact(contact) => contact::run_reported(case, contact, observer),
         ProblemCase::RingLoad(ring) => ring_load::run(case, ring, true, observer),
-        ProblemCase::Catalogue(_) => run_trace(case, observer),
+        ProblemCase::TwoPlates(_) | ProblemCase::Catalogue(_) => run_trace(case, observer),
     }
 }
 

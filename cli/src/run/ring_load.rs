@@ -242,6 +242,7 @@ fn shapes(problem: &RingLoadProblem, branch: &Branch) -> Vec<Shape> {
             sigma: profile.sigma,
             z: profile.z,
             plate: ring,
+            plate_below: None,
             stability: Stability::of(point.unstable.is_some_and(|n| n > 0), false),
         })
     };

@@ -120,6 +120,7 @@ impl Stability {
         let largest = self.scans.iter().map(|scan| scan.n_max).max();
         StabilityRecord {
             full: self.full,
+            both_parities: false,
             max_n: largest.filter(|_| self.full),
             certain: self.full.then(|| !self.partial && self.scans.iter().all(|s| s.certain)),
             not_located: self.missed,

@@ -244,6 +244,7 @@ fn name_of(sweep: &str, index: usize) -> String {
 fn parameter(case: &ResolvedCase, catalogue: &[CatalogueEntry]) -> String {
     match &case.problem {
         ProblemCase::Contact(_) => "z0".to_owned(),
+        ProblemCase::TwoPlates(plates) => plates.parameter().to_owned(),
         ProblemCase::RingLoad(_) => "alpha".to_owned(),
         ProblemCase::Catalogue(problem) => {
             let entry = catalogue.iter().find(|entry| entry.name == problem.name);

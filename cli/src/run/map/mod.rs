@@ -113,6 +113,11 @@ struct Attempt {
     refused: Vec<String>,
 }
 
+/// The refusal of a case from pole to pole.
+fn mirror_only(case: &ResolvedCase) -> MapError {
+    RunError::MirrorOnly { case: case.name.clone(), command: "arclen map" }.into()
+}
+
 /// Map a case over `key`. The observer hears of every point and may stop the work; what was
 /// computed until then is kept.
 ///
@@ -127,6 +132,7 @@ pub(crate) fn run_map(
     let mut usual = None;
     let (value, key) = match &case.problem {
         ProblemCase::Contact(contact) => contact::value(contact, key)?,
+        ProblemCase::TwoPlates(_) => return Err(mirror_only(case)),
         ProblemCase::Catalogue(problem) => catalogue::value(problem, key)?,
         ProblemCase::RingLoad(ring) => {
             usual = (key == ring_load::MOMENT).then_some(ring_load::USUAL_MOMENT * ring.bending);
@@ -137,6 +143,7 @@ pub(crate) fn run_map(
     let task = Task { case, key, value, range };
     let attempt = |at: f64, observer: &mut Observer<'_>| match &case.problem {
         ProblemCase::Contact(contact) => contact::attempt(&task, contact, at, observer),
+        ProblemCase::TwoPlates(_) => Err(mirror_only(case)),
         ProblemCase::Catalogue(problem) => catalogue::attempt(&task, problem, at, observer),
         ProblemCase::RingLoad(ring) => ring_load::attempt(&task, ring, at, observer),
     };
