@@ -8,13 +8,14 @@ use continuation::diagram::{Diagram, DiagramSettings, Explorer};
 use continuation::linalg::Matrix;
 use continuation::{
     Branch, EventKind, NewtonSettings, Point, Problem, Progress, Settings, Shape, StopReason,
-    Tracer, Watch, newton,
+    Tracer, Watch, both_ways, newton,
 };
 use shell_contact::half::HalfMeridian;
 use shell_contact::modes::{AsymmetricModes, Parity, ScanSettings, scan_branch};
 use shell_contact::quadrature::gauss_legendre;
 use shell_contact::two_plates::{
-    Half, Plate, Side, Support, SupportedProblem, TwoPlatesGroups, TwoPlatesProblem, spring_pairs,
+    Half, Plate, Side, Support, SupportedProblem, TwoPlatesGroups, TwoPlatesProblem,
+    next_unconnected, spring_pairs,
 };
 use shell_contact::{ContactProblem, Law, trace_contact};
 use std::ops::ControlFlow;
@@ -364,4 +365,32 @@ fn forks_are_where_antisymmetric_modes_turn() {
         folds.iter().all(|p| (p - 0.8228).abs() < 1e-4 || (p - 0.7633).abs() < 1e-4),
         "{folds:?}"
     );
+}
+
+/// Flat above and buckled below: no fork of the symmetric branch leads there, two springs do.
+#[test]
+fn branches_that_no_fork_leads_to_are_found_by_two_springs() {
+    let half = contact(100, Law::Hooke, FIG12);
+    let whole = whole(&half);
+    let symmetric = symmetric_branch(&half, 1.15, 0.65);
+    let diagram = diagram(&whole, 0.65, 0.8);
+    let known: Vec<&Branch> = diagram.branches.iter().map(|one| &one.branch).collect();
+    let at = [0.83, 0.82, 0.81, 0.79, 0.76, 0.72, 0.68];
+    let found = next_unconnected(&whole, &symmetric, &known, &at).expect("a state of its own");
+    let settings =
+        Settings { domain: Some((0.65, 1.15)), max_step: Some(0.01), ..Settings::default() };
+    let go_on = &mut |_: &Progress| ControlFlow::Continue(());
+    let p = whole.parameters_at(found.z0);
+    let branch = both_ways(&whole, "z0", &found.u, &p, settings, &[], go_on).unwrap();
+    // part of it is stable, one dimple much deeper than the other, and it is not found again
+    let [top, bottom] =
+        ["pole_top", "pole_bottom"].map(|o| branch.observables.iter().position(|name| name == o));
+    let differ = |q: &&Point| {
+        let poles = [top, bottom].map(|k| q.observables[k.unwrap()]);
+        q.unstable == Some(0) && (poles[0] - poles[1]).abs() > 0.1
+    };
+    assert!(branch.points.iter().filter(differ).count() > 5);
+    let known: Vec<&Branch> = known.into_iter().chain([&branch]).collect();
+    let next = next_unconnected(&whole, &symmetric, &known, &[found.z0]);
+    assert!(next.is_none_or(|next| (next.plates[0] - found.plates[0]).abs() > 1e-6));
 }

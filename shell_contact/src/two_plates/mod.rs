@@ -47,11 +47,13 @@ mod evaluate;
 mod half;
 mod observe;
 mod pairs;
+mod search;
 mod supported;
 
 pub use half::{Half, Side};
 pub use observe::{NAMES, TwoPlatesObservation};
 pub use pairs::{SpringPair, spring_pairs};
+pub use search::{Unconnected, next_unconnected};
 pub use supported::{Support, SupportedProblem};
 
 use crate::energy;
