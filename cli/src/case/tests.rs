@@ -179,7 +179,7 @@ fn unknown_keys() {
 fn missing_keys() {
     says(
         &complaint("problem = \"contact\"", ""),
-        &["a.toml: problem: missing", "contact, ring-load"],
+        &["a.toml: problem: missing", "contact, two-plates, ring-load"],
     );
     says(&complaint("law = \"hooke\"\n", ""), &["line 2: shell.law: missing", "mooney-rivlin"]);
     says(&complaint("\"hooke\"", "\"mooney-rivlin\""), &["shell.b: missing"]);
@@ -307,7 +307,11 @@ fn values_out_of_range() {
     );
     says(
         &complaint("\"contact\"", "\"bartu\""),
-        &["line 1: problem = \"bartu\"", "did you mean \"bratu\"", "contact, ring-load, bratu"],
+        &[
+            "line 1: problem = \"bartu\"",
+            "did you mean \"bratu\"",
+            "contact, two-plates, ring-load, bratu",
+        ],
     );
     let message = read_with("problem = \"cusp\"\n[path]\nstart = 1\n", &[]).unwrap_err();
     says(&message, &["path.start = 1: must be different from path.end"]);

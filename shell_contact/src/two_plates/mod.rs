@@ -30,7 +30,7 @@
 //!     surface_tension: 0.0,
 //!     gas_exponent: 1.07,
 //!     top: plate,
-//!     bottom: Plate { adhesion: 1e-3, ..plate },
+//!     bottom: plate,
 //! };
 //! let shell = Shell { law: Law::Hooke, poisson: 0.5 };
 //! let problem = TwoPlatesProblem::new(&shell, &groups, Mesh::uniform(50)?)?;
