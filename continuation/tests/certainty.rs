@@ -143,3 +143,79 @@ fn masses_of_any_scale() {
     let branch = trace(&Linear { a, mass: Some(diagonal([1.0, 0.0])) });
     assert!(branch.points.iter().all(|point| point.certified && point.unstable == Some(0)));
 }
+
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        2.0 * (self.0 >> 11) as f64 / (1u64 << 53) as f64 - 1.0
+    }
+
+    /// `H₁ D H₂` with reflections, of condition `10^digits`.
+    fn regular(&mut self, n: usize, digits: f64) -> Vec<Vec<f64>> {
+        let mut reflection = || {
+            let v: Vec<f64> = (0..n).map(|_| self.next()).collect();
+            let vv: f64 = v.iter().map(|x| x * x).sum();
+            move |i: usize, j: usize| f64::from(u8::from(i == j)) - 2.0 * v[i] * v[j] / vv
+        };
+        let (left, right) = (reflection(), reflection());
+        let d = |k: usize| 10f64.powf(-digits * k as f64 / (n as f64 - 1.0).max(1.0));
+        let at = |i: usize, j: usize| (0..n).map(|k| left(i, k) * d(k) * right(k, j)).sum();
+        (0..n).map(|i| (0..n).map(|j| at(i, j)).collect()).collect()
+    }
+}
+
+/// Pencils `P (Λ ⊕ I) Q − λ P (I ⊕ N) Q` of index up to three whose finite eigenvalues are known.
+#[test]
+fn pencils_of_any_condition_and_index() {
+    let mut random = Random(9);
+    let (mut certain, mut doubtful) = (0, 0);
+    for case in 0..600 {
+        let (finite, index) = (1 + case % 5, case / 5 % 4);
+        // chains of infinite eigenvalues: one of length `index`, and a single one
+        let n = finite + if index == 0 { 0 } else { index + 1 };
+        let digits = f64::from(case as u32 / 20 % 7);
+        let (p, q) = (random.regular(n, digits), random.regular(n, 0.5 * digits));
+        let values: Vec<f64> = (0..finite)
+            .map(|_| {
+                let size = 10f64.powf(1.5 * random.next() - 0.5);
+                size.copysign(random.next())
+            })
+            .collect();
+        let (mut a, mut m) = (Dense::new(n), Dense::new(n));
+        for i in 0..n {
+            for j in 0..n {
+                let own = |k: usize| if k < finite { (values[k], 1.0) } else { (1.0, 0.0) };
+                for k in 0..n {
+                    let (in_a, in_m) = own(k);
+                    a.add(i, j, p[i][k] * in_a * q[k][j]);
+                    m.add(i, j, p[i][k] * in_m * q[k][j]);
+                }
+                for k in finite..(finite + index).saturating_sub(1) {
+                    m.add(i, j, p[i][k] * q[k + 1][j]);
+                }
+            }
+        }
+        // what rounding of the entries moves the finite ones by, with room
+        let moved = f64::EPSILON * 10f64.powf(1.5 * digits) * 1e3;
+        let exact = values.iter().filter(|v| **v > 0.0).count();
+        let problem = Linear { a, mass: Some(m) };
+        let settings = Settings { target: Some(1.0), ..Settings::default() };
+        let Ok(mut tracer) = Tracer::new(&problem, "p", &vec![0.0; n], &[0.0], settings) else {
+            continue;
+        };
+        let point = tracer.next().unwrap();
+        if !point.certified {
+            doubtful += 1;
+            continue;
+        }
+        if values.iter().all(|v| v.abs() > moved) {
+            assert_eq!(point.unstable, Some(exact), "{case} {index} {digits} {values:?}");
+            certain += 1;
+        }
+    }
+    println!("{certain} certain counts, {doubtful} others");
+    assert!(certain > 200, "{certain}");
+}

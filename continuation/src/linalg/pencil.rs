@@ -13,7 +13,8 @@ use faer::{Mat, Scale};
 
 /// Singular values below this many roundings, times the dimension, are zero.
 const RANK: f64 = 32.0;
-/// Singular values between rounding and this part of the largest leave the rank uncertain.
+/// Singular values between rounding and this part of the largest, times what was lost before, leave the
+/// rank uncertain.
 const GREY: f64 = 1e-11;
 /// Sweeps that give rows and columns the same size.
 const SWEEPS: usize = 8;
@@ -34,13 +35,13 @@ pub(super) fn finite_eigenvalues(a: Mat<f64>, m: Mat<f64>) -> Option<Vec<(f64, f
 /// The same with their errors; complete where the ranks are beyond doubt.
 pub(super) fn finite_spectrum(a: Mat<f64>, m: Mat<f64>) -> Option<Spectrum> {
     let reduced = Reduced::of(a, m)?;
-    let (complete, loss) = (reduced.clear, reduced.loss);
+    let complete = reduced.clear;
     let Some(inverse) = Inverse::of(reduced)? else {
         return Some(Spectrum { values: Vec::new(), errors: Vec::new(), complete });
     };
     let found = as_it_is(&inverse.operator)?;
     let moved = |(z, error): (&(f64, f64), &f64)| {
-        let (size, error) = (z.0.hypot(z.1), loss * error);
+        let (size, error) = (z.0.hypot(z.1), inverse.loss * error);
         // an eigenvalue of the operator that may be zero may belong to any other
         let by = if error < size { error / (size * (size - error)) } else { f64::INFINITY };
         (inverse.back(*z), by)
@@ -55,11 +56,13 @@ pub(super) fn finite_spectrum(a: Mat<f64>, m: Mat<f64>) -> Option<Spectrum> {
 struct Inverse {
     operator: Mat<f64>,
     shift: f64,
+    /// By how much its errors exceed those of the QR iteration.
+    loss: f64,
 }
 
 impl Inverse {
     /// `Some(None)` of a pencil without finite eigenvalues.
-    fn of(Reduced { a, m, .. }: Reduced) -> Option<Option<Self>> {
+    fn of(Reduced { a, mut m, loss, .. }: Reduced) -> Option<Option<Self>> {
         if a.nrows() == 0 {
             return Some(None);
         }
@@ -68,17 +71,28 @@ impl Inverse {
         let mut best = None;
         let mut best_ratio = SINGULAR;
         for shift in SHIFTS.map(|s| s * unit) {
-            let lu = (&a - &m * Scale(shift)).full_piv_lu();
+            // rows of one size: what is left of the ratio of pivots is lost
+            let shifted = &a - &m * Scale(shift);
+            let rows: Vec<f64> = (0..a.nrows())
+                .map(|i| (0..a.nrows()).fold(0.0_f64, |s, j| s.max(shifted[(i, j)].abs())))
+                .map(|size| if size > 0.0 { (-size.log2().round()).exp2() } else { 1.0 })
+                .collect();
+            let scaled = Mat::from_fn(a.nrows(), a.nrows(), |i, j| rows[i] * shifted[(i, j)]);
+            let lu = scaled.full_piv_lu();
             let pivots = (0..a.nrows()).map(|i| lu.U()[(i, i)].abs());
             let (least, most) =
                 pivots.fold((f64::INFINITY, 0.0), |(l, g): (f64, f64), d| (l.min(d), g.max(d)));
             if least > best_ratio * most {
                 best_ratio = least / most;
-                best = Some((shift, lu));
+                best = Some((shift, lu, rows));
             }
         }
-        let (shift, lu) = best?;
-        Some(Some(Inverse { operator: balanced(lu.solve(&m)), shift }))
+        let (shift, lu, rows) = best?;
+        for j in 0..m.ncols() {
+            (0..m.nrows()).for_each(|i| m[(i, j)] *= rows[i]);
+        }
+        let loss = loss * (1.0 + best_ratio.recip());
+        Some(Some(Inverse { operator: balanced(lu.solve(&m)), shift, loss }))
     }
 
     /// The eigenvalue of the pencil to one of the operator.
@@ -109,9 +123,9 @@ impl Reduced {
             equilibrate(&mut a, &mut m);
             let (u, s, v) = svd(&m)?;
             let zero = RANK * n as f64 * f64::EPSILON;
-            let doubt = |x: &f64, of: f64| *x > zero * of && *x < GREY * of;
+            let doubt = |x: &f64, of: f64, lost: f64| *x > zero * of && *x < GREY * lost * of;
             let rank = s.iter().filter(|x| **x > zero * s[0]).count();
-            clear &= !s.iter().any(|x| doubt(x, s[0]));
+            clear &= !s.iter().any(|x| doubt(x, s[0], loss));
             if rank == n {
                 return Some(Reduced { a, m, clear, loss });
             }
@@ -125,9 +139,9 @@ impl Reduced {
             let size = a21.norm_max().max(a22.norm_max()).max(a12.norm_max());
             let (u2, s2, v2) = svd(&a22)?;
             let solved = s2.iter().filter(|x| **x > zero * size).count();
-            clear &= !s2.iter().any(|x| doubt(x, size));
+            clear &= !s2.iter().any(|x| doubt(x, size, loss));
             if solved > 0 {
-                loss = loss.max(size / s2[solved - 1]);
+                loss *= (size / s2[solved - 1]).max(1.0);
             }
             let (b, c) = (&a12 * &v2, u2.transpose() * &a21);
             let reduced = Mat::from_fn(rank, rank, |i, j| {

@@ -1,7 +1,7 @@
 //! Where a branch begins: a start that is rounding, and one that is a special point itself.
 
 use super::Tracer;
-use crate::branch::{Detail, Event, EventKind};
+use crate::branch::{Detail, Doubt, Event, EventKind};
 use crate::problem::{Problem, Stability};
 use crate::singular::{Begun, fold_form, locate_hopf, max_abs};
 use crate::step::{Constraint, Precision, State};
@@ -9,8 +9,9 @@ use crate::step::{Constraint, Precision, State};
 /// A state this much smaller than the one that Newton's method began with is what is left of zero:
 /// its corrections converge to 1e-12 of that.
 const LEFT_OVER: f64 = 1e-9;
-/// Part of the first step to which a special point at the start is seen from both sides.
-const BESIDE: f64 = 0.1;
+/// Part of the first step to which a special point at the start is seen from both sides: what else lies
+/// that near is not told apart.
+const BESIDE: f64 = 1e-3;
 /// A parameter's part of the tangent, or a real part beside its imaginary part, below which a start
 /// deserves a closer look.
 const SUSPECT: f64 = 1e-6;
@@ -45,8 +46,14 @@ impl<P: Problem> Tracer<'_, P> {
         let range = self.core.weights.parameter;
         if let Some(Begun { crossing, error }) = crossing {
             let (ahead, behind) = (self.beside(1.0), self.beside(-1.0));
+            // of more modes each may go either way
+            let modes = match crossing.leaving.len() {
+                _ if crossing.from_side => Some(0),
+                0 | 1 => Some(1),
+                _ => None,
+            };
             let detail = Detail::Crossing(crossing);
-            self.announce(EventKind::BranchPoint, error, detail, ahead, behind);
+            self.announce(EventKind::BranchPoint, error, detail, (behind, ahead), modes);
             return;
         }
         if start.tp.abs() <= SUSPECT * range {
@@ -66,7 +73,8 @@ impl<P: Problem> Tracer<'_, P> {
                 let (ahead, behind) = (self.beside(1.0), self.beside(-1.0));
                 self.start.tp = 0.0;
                 let error = off.abs() / start.length + missed.unwrap_or(0.0);
-                self.announce(EventKind::Fold, error, Detail::Fold(form), ahead, behind);
+                let detail = Detail::Fold(form);
+                self.announce(EventKind::Fold, error, detail, (behind, ahead), Some(1));
             }
             return;
         }
@@ -95,7 +103,7 @@ impl<P: Problem> Tracer<'_, P> {
             _ => return,
         };
         let detail = detail.map_or(Detail::None, Detail::Hopf);
-        self.announce(EventKind::Hopf, error, detail, Some(ahead), behind);
+        self.announce(EventKind::Hopf, error, detail, (behind, Some(ahead)), Some(2));
         (self.start.pair, self.current.pair) = (0.0, 0.0);
     }
 
@@ -116,14 +124,15 @@ impl<P: Problem> Tracer<'_, P> {
     }
 
     /// Makes the first point the event that it is. What is compared with the next point is the state
-    /// just behind it.
+    /// just behind it, and a doubt is left unless the count changes from the one side to the other by
+    /// what the event explains, `modes` where that is known.
     fn announce(
         &mut self,
         kind: EventKind,
         error: f64,
         detail: Detail,
-        ahead: Option<State>,
-        behind: Option<State>,
+        (behind, ahead): (Option<State>, Option<State>),
+        modes: Option<usize>,
     ) {
         let Ok(residual) = self.core.residual(&self.start) else { return };
         let start = &mut self.start;
@@ -136,7 +145,14 @@ impl<P: Problem> Tracer<'_, P> {
             (start.certified, start.critical) = (ahead.certified, false);
         }
         let before = behind.and_then(|x| x.unstable);
-        let after = ahead.and_then(|x| x.unstable);
+        let after = ahead.as_ref().and_then(|x| x.unstable);
+        if let (Some(a), Some(b), Some(modes)) = (before, after, modes)
+            && a.abs_diff(b) != modes
+        {
+            let (from, to) = (start.p, ahead.map_or(start.p, |x| x.p));
+            let reason = "more than the special point at the start changes beside it".to_owned();
+            self.doubts.push(Doubt { from, to, reason });
+        }
         self.running_unstable = after.or(start.unstable);
         let unstable = before.into_iter().chain(after).min();
         let event = Event {
