@@ -336,11 +336,28 @@ pub(crate) fn by_parameter<P: Problem + ?Sized>(
     which: ParamId,
     out: &mut [f64],
 ) -> Result<Vec<f64>, EvalError> {
+    let unit = magnitude(p[which.0], problem.parameters()[which.0].scale);
+    let found = along(problem, (u, p), which, (&vec![0.0; u.len()], 1.0), unit, |_| true);
+    out.copy_from_slice(&found.derivative);
+    crate::problem::check_finite(out)?;
+    Ok(found.error)
+}
+
+/// `∂f/∂u du + ∂f/∂p[which] dp` of any problem, from its residuals where the parameter is `admitted`, with
+/// steps in `unit`.
+pub(crate) fn along<P: Problem + ?Sized>(
+    problem: &P,
+    (u, p): (&[f64], &[f64]),
+    which: ParamId,
+    (du, dp): (&[f64], f64),
+    unit: f64,
+    admitted: impl Fn(f64) -> bool,
+) -> Ladder {
     let n = u.len();
     let mut ladder = Ladder::new(n);
     let (mut place, mut values) = (u.to_vec(), p.to_vec());
     let evaluate = |u: &[f64], p: &[f64], r: &mut [f64]| {
-        if problem.residual(u, p, r).is_err() {
+        if !admitted(p[which.0]) || problem.residual(u, p, r).is_err() {
             r.fill(f64::NAN);
         }
     };
@@ -354,13 +371,14 @@ pub(crate) fn by_parameter<P: Problem + ?Sized>(
         evaluate(&place, &values, r);
     });
     values.copy_from_slice(p);
-    let unit = magnitude(p[which.0], problem.parameters()[which.0].scale);
     ladder.unit.fill(unit);
     ladder.climb(|multiple, r| {
-        values[which.0] = p[which.0] + multiple * unit;
-        evaluate(u, &values, r);
+        let h = multiple * unit;
+        for ((place, u), du) in place.iter_mut().zip(u).zip(du) {
+            *place = u + h * du;
+        }
+        values[which.0] = p[which.0] + h * dp;
+        evaluate(&place, &values, r);
     });
-    out.copy_from_slice(&ladder.derivative);
-    crate::problem::check_finite(out)?;
-    Ok(ladder.error)
+    ladder
 }

@@ -5,7 +5,7 @@
 //! the residual whose error is known; a kink or noise does not pass for it, because what differs must
 //! differ at another state and along another direction too.
 
-use crate::differences::{Ladder, magnitude, moved};
+use crate::differences::{self, magnitude};
 use crate::linalg::{Matrix, max_abs};
 use crate::problem::{ParamId, Problem};
 use crate::singular::arbitrary;
@@ -112,36 +112,12 @@ fn compare<P: Problem>(
         }
     };
     problem.derivative_error(u, p, which, du, dp, &mut missed).ok()?;
-    let evaluate = |u: &[f64], p: &[f64], r: &mut [f64]| {
-        if guard.nearest(p[which.0]) != p[which.0] || problem.residual(u, p, r).is_err() {
-            r.fill(f64::NAN);
-        }
-    };
-    let mut ladder = Ladder::new(n);
-    let (mut place, mut values) = (u.to_vec(), p.to_vec());
-    ladder.centre(|turn, r| {
-        for (k, (place, u)) in place.iter_mut().zip(u).enumerate() {
-            *place = moved(*u, k, turn);
-        }
-        for (k, (value, p)) in values.iter_mut().zip(p).enumerate() {
-            *value = moved(*p, n + k, turn);
-        }
-        evaluate(&place, &values, r);
-    });
-    values.copy_from_slice(p);
     let unit = match direction {
         Some(_) => 1.0,
         None => magnitude(p[which.0], problem.parameters()[which.0].scale),
     };
-    ladder.unit.fill(unit);
-    ladder.climb(|multiple, r| {
-        let h = multiple * unit;
-        for ((place, u), du) in place.iter_mut().zip(u).zip(du) {
-            *place = u + h * du;
-        }
-        values[which.0] = p[which.0] + h * dp;
-        evaluate(&place, &values, r);
-    });
+    let inside = |p: f64| guard.nearest(p) == p;
+    let ladder = differences::along(problem, (u, p), which, (du, dp), unit, inside);
     let parameter = direction.is_none().then_some(problem.parameters()[which.0].name);
     let size = max_abs(&ladder.derivative).max(max_abs(&given));
     let rows = (0..n).filter_map(|row| {

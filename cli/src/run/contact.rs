@@ -7,7 +7,7 @@ use super::{Observer, RunError, listen, settings};
 use crate::case::{ContactCase, DeviceCase, Law, ResolvedCase};
 use crate::output::{Cell, ContactRow, EventRecord, MaxwellRecord, Pictures, Table, TraceResult};
 use crate::pictures::{self, Curve, Mark, Profile, Shape};
-use continuation::{Point, Problem, Settings, TraceError};
+use continuation::{Event, Point, Problem, Settings, TraceError};
 use shell_contact::device::{MaxwellPoint, StartError, maxwell_points, trace_loaded};
 use shell_contact::{ContactBranch, ContactProblem, Device, LoadedProblem};
 use shell_contact::{Dimensionless, Mesh, Shell, trace_contact};
@@ -309,25 +309,32 @@ fn tabulate(traced: &ContactBranch, scanned: &Stability) -> (Table, Vec<EventRec
         table.push(cells);
     }
     let events = branch.events.iter().enumerate().map(|(k, event)| {
-        let at = row(traced, event.point, &branch.points[event.point]);
-        EventRecord {
-            kind: event.kind.to_string(),
-            parameter: Some(event.p),
-            z0: loaded.then_some(at.z0),
-            force: Some(at.force),
-            deformation: traced.deformation(at.z0),
-            energy_total: Some(at.energy_total),
-            unstable_before: event.unstable_before,
-            unstable_after: event.unstable_after,
-            residual: Some(event.residual),
-            error_estimate: Some(event.error_estimate),
-            observables: Vec::new(),
-            form: form(branch, event),
-            mode: scanned.mode(branch, k),
-        }
+        let mode = scanned.mode(branch, k);
+        EventRecord { mode, ..event_record(traced, event, loaded) }
     });
     let events = events.collect();
     (table, events)
+}
+
+/// A special point with what every contact case says of it.
+pub(super) fn event_record(traced: &ContactBranch, event: &Event, loaded: bool) -> EventRecord {
+    let branch = &traced.branch;
+    let at = row(traced, event.point, &branch.points[event.point]);
+    EventRecord {
+        kind: event.kind.to_string(),
+        parameter: Some(event.p),
+        z0: loaded.then_some(at.z0),
+        force: Some(at.force),
+        deformation: traced.deformation(at.z0),
+        energy_total: Some(at.energy_total),
+        unstable_before: event.unstable_before,
+        unstable_after: event.unstable_after,
+        residual: Some(event.residual),
+        error_estimate: Some(event.error_estimate),
+        observables: Vec::new(),
+        form: form(branch, event),
+        mode: None,
+    }
 }
 
 fn pictures(

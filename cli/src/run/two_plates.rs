@@ -1,7 +1,7 @@
 //! The shell from pole to pole between two plates.
 
-use super::contact::{SAMPLES, drawn, loaded_path, no_start, path, row};
-use super::form::{StabilityColumns, certified, form};
+use super::contact::{SAMPLES, drawn, event_record, loaded_path, no_start, path, row};
+use super::form::{StabilityColumns, certified};
 use super::stability::Stability;
 use super::{Observer, RunError, listen};
 use crate::case::{PlateCase, ResolvedCase, TwoPlatesCase};
@@ -150,22 +150,8 @@ pub(super) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) 
         table.push(cells);
     }
     let events = branch.events.iter().map(|event| {
-        let at = row(traced, event.point, &branch.points[event.point]);
-        EventRecord {
-            kind: event.kind.to_string(),
-            parameter: Some(event.p),
-            z0: loaded.then_some(at.z0),
-            force: Some(at.force),
-            deformation: traced.deformation(at.z0),
-            energy_total: Some(at.energy_total),
-            unstable_before: event.unstable_before,
-            unstable_after: event.unstable_after,
-            residual: Some(event.residual),
-            error_estimate: Some(event.error_estimate),
-            observables: vec![("shift".to_owned(), observed(branch, event.point, "shift"))],
-            form: form(branch, event),
-            mode: None,
-        }
+        let observables = vec![("shift".to_owned(), observed(branch, event.point, "shift"))];
+        EventRecord { observables, ..event_record(traced, event, loaded) }
     });
     TraceResult {
         case: case.name.clone(),

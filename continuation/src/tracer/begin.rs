@@ -1,14 +1,16 @@
 //! Where a branch begins: a start that is rounding, and one that is a special point itself.
 
-use super::Tracer;
+use super::{TraceError, Tracer};
 use crate::branch::{Detail, Doubt, Event, EventKind};
 use crate::problem::{Problem, Stability};
-use crate::singular::{Begun, fold_form, locate_hopf, max_abs};
-use crate::step::{Constraint, Precision, State};
+use crate::singular::{Begun, branch_point_at, fold_form, locate_hopf, max_abs};
+use crate::step::{Constraint, Core, Precision, State};
 
 /// A state this much smaller than the one that Newton's method began with is what is left of zero:
 /// its corrections converge to 1e-12 of that.
 const LEFT_OVER: f64 = 1e-9;
+/// Number of unknowns up to which the rank of every start is looked at: that costs next to nothing.
+const SMALL: usize = 60;
 /// Part of the first step to which a special point at the start is seen from both sides: what else lies
 /// that near is not told apart.
 const BESIDE: f64 = 1e-3;
@@ -33,6 +35,38 @@ pub(super) fn settle<P: Problem>(problem: &P, guess: &[f64], u: &mut [f64], p: &
     if known && there.iter().all(|r| r.is_finite()) && max_abs(&there) <= max_abs(&here) {
         u.fill(0.0);
     }
+}
+
+/// The first state with its tangent and weights; the branch point that it is, if it is one.
+///
+/// # Errors
+/// [`TraceError::SingularEverywhere`] from `everywhere`; where the start has no tangent.
+pub(super) fn at<P: Problem>(
+    core: &mut Core<'_, P>,
+    start: &mut State,
+    increasing: bool,
+    range: f64,
+    everywhere: &dyn Fn(&[f64]) -> Option<TraceError>,
+) -> Result<Option<Begun>, TraceError> {
+    let begun = core.start(start, increasing, range);
+    // one more solve tells whether it is worth a closer look
+    let suspect = begun.is_err() || start.orientation == 0 || core.is_nearly_singular(start);
+    if (suspect || start.u.len() <= SMALL)
+        && let Some(error) = everywhere(&start.u)
+    {
+        return Err(error);
+    }
+    if suspect {
+        let before = (start.clone(), core.weights);
+        core.weigh_without_tangent(start, range);
+        if let Some(crossing) = branch_point_at(core, start, increasing) {
+            core.weigh_anew(start, range).map_err(TraceError::Tangent)?;
+            return Ok(Some(crossing));
+        }
+        (*start, core.weights) = before;
+    }
+    begun.map_err(TraceError::Tangent)?;
+    Ok(None)
 }
 
 impl<P: Problem> Tracer<'_, P> {

@@ -37,7 +37,6 @@ use crate::events::{Beside, Detector, Watch};
 use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem, Stability};
 use crate::settings::{Settings, SettingsError};
-use crate::singular::branch_point_at;
 use crate::sound::{check_sizes, examine};
 use crate::step::{
     Constraint, Core, Precision, Refusal, State, StepSize, Weights, curve_scale, judge,
@@ -52,9 +51,6 @@ use switching::Departure;
 
 /// Part of the separation on a curve of special points below which two of them meet.
 const MEETING: f64 = 1e-3;
-
-/// Number of unknowns up to which the rank of every start is looked at: that costs next to nothing.
-const SMALL: usize = 60;
 
 /// Traces one branch; yields its points in order, special points included, the start first.
 ///
@@ -170,30 +166,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let unit = Weights { unknowns: 1.0, parameter: 1.0 };
         let mut core = Core::new(problem, ParamId(which), p, unit, &settings);
         core.statistics.newton_iterations += report.iterations;
-        let begun = core.start(&mut start, increasing, range);
-        // one more solve tells whether it is worth a closer look
-        if (n <= SMALL
-            || begun.is_err()
-            || start.orientation == 0
-            || core.is_nearly_singular(&start))
-            && let Some(error) = everywhere(&start.u)
-        {
-            return Err(error);
-        }
-        let mut crossing = None;
-        if begun.is_err() || start.orientation == 0 || core.is_nearly_singular(&start) {
-            let before = (start.clone(), core.weights);
-            core.weigh_without_tangent(&start, range);
-            crossing = branch_point_at(&mut core, &mut start, increasing);
-            if crossing.is_some() {
-                core.weigh_anew(&mut start, range).map_err(TraceError::Tangent)?;
-            } else {
-                (start, core.weights) = before;
-            }
-        }
-        if crossing.is_none() {
-            begun.map_err(TraceError::Tangent)?;
-        }
+        let crossing = begin::at(&mut core, &mut start, increasing, range, &everywhere)?;
         let mut tracer = Self::set_up(core, start, p, settings, range)?;
         tracer.begin_at_special_point(crossing);
         Ok(tracer)
@@ -416,7 +389,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
                             first,
                             2.0 * h * length,
                         );
-                        if let Some(wrong) = self.core.wrong_derivative(&self.current.clone()) {
+                        if let Some(wrong) = self.core.wrong_derivative(&self.current) {
                             detail = format!("{detail}; {wrong}");
                         }
                         return self.end(StopReason::StepTooSmall, detail);
