@@ -63,6 +63,8 @@ fn a_trace_sees_where_mirror_symmetry_is_lost() {
     for picture in ["force_distance.svg", "shapes.svg"] {
         assert!(out.join(picture).exists(), "{picture}");
     }
+    let picture = fs::read_to_string(out.join("force_distance.svg")).unwrap();
+    assert!(picture.contains(">stable to axisymmetric modes<") && !picture.contains(">stable<"));
 }
 
 /// From pull-off the bubble leaves one plate; the diagram has both ways it may take.

@@ -39,6 +39,16 @@ pub(crate) enum Examined {
     AxisymmetricAndOthers,
 }
 
+impl Examined {
+    /// What may be said of a state that is not unstable.
+    pub(super) fn stable(self) -> &'static str {
+        match self {
+            Examined::All | Examined::AxisymmetricAndOthers => "stable",
+            _ => "stable to axisymmetric modes",
+        }
+    }
+}
+
 /// A curve along a branch.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Curve {

@@ -149,7 +149,7 @@ fn chart(title: &str, x: &str, y: &str, curves: &[Curve]) -> Chart {
     let unstable = curves.iter().any(Curve::has_unstable);
     if let [curve] = curves {
         let color = of_quantity(&curve.label);
-        let label = if unstable { "stable" } else { &curve.label };
+        let label = if unstable { curve.examined.stable() } else { &curve.label };
         if !label.is_empty() {
             legend.push(Entry::Line { color, stroke: Stroke::Solid, label: shown(label) });
         }
@@ -215,7 +215,7 @@ fn stability_entries(curves: &[Curve], color: Color) -> Vec<Entry> {
     let mut entries = Vec::new();
     // a single curve is its own sample
     if color == FAINT && curves.iter().any(Curve::has_unstable) {
-        let label = "stable".to_owned();
+        let label = examined.stable().to_owned();
         entries.push(Entry::Line { color, stroke: Stroke::Solid, label });
     }
     let lines =
