@@ -41,6 +41,15 @@ impl Cubic {
         [first, second]
     }
 
+    /// The slope `s₀ + b t + a t²` at `x = t h` where it is least or largest inside, and `a`.
+    pub(crate) fn turn_of_slope(&self) -> Option<(f64, f64)> {
+        let change = (self.g[1] - self.g[0]) / self.h;
+        let [s0, s1] = self.s;
+        let (a, b) = (3.0 * (s0 + s1) - 6.0 * change, 6.0 * change - 4.0 * s0 - 2.0 * s1);
+        let turn = -0.5 * b / a;
+        (turn > 0.0 && turn < 1.0).then(|| (s0 + 0.5 * b * turn, a))
+    }
+
     /// Whether the cubic has two zeros inside though the ends have the same sign.
     pub(crate) fn hides_zeros(&self) -> bool {
         let [g0, g1] = self.g;

@@ -1,12 +1,14 @@
 //! Special points: test functions, their detection in a step, and their location.
 
 mod detect;
+mod extrapolate;
 mod hermite;
 mod locate;
 mod root;
 mod watched;
 
 pub(crate) use detect::{Beside, Candidate, Detector, Role};
+pub(crate) use extrapolate::Stretch;
 pub(crate) use hermite::basis;
 pub(crate) use locate::{Located, bend, interpolate, locate};
 pub(crate) use watched::locate_watched;

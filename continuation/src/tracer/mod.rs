@@ -33,7 +33,7 @@ pub use input::{Progress, TraceError};
 pub(crate) use snapshot::Snapshot;
 
 use crate::branch::{Branch, Doubt, Event, Point, Statistics, Stop, StopReason};
-use crate::events::{Beside, Detector, Watch};
+use crate::events::{Beside, Detector, Stretch, Watch};
 use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem, Stability};
 use crate::settings::{Settings, SettingsError};
@@ -68,6 +68,8 @@ pub struct Tracer<'a, P: Problem> {
     previous: State,
     // scaled length of the last step; 0 when `previous` says nothing about the curvature
     previous_h: f64,
+    // scaled distance from `previous`, also where its tangent has another scale; 0 at the start
+    past: f64,
     current: State,
     trial: State,
     work: State,
@@ -192,6 +194,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             start_p: p.to_vec(),
             previous: start.clone(),
             previous_h: 0.0,
+            past: 0.0,
             current: start.clone(),
             trial: start.clone(),
             work: start.clone(),
@@ -411,7 +414,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             return false;
         }
         std::mem::swap(&mut self.current, &mut self.anchor);
-        self.previous_h = 0.0;
+        (self.previous_h, self.past) = (0.0, 0.0);
         // the corner blurs short steps; longer ones see the crossing branches only
         let longest = self.size.longest(self.current.length);
         let lengths = [1.0, 8.0, 64.0, 512.0].map(|factor| factor * h);
@@ -452,7 +455,14 @@ impl<'a, P: Problem> Tracer<'a, P> {
         // counts that are lower bounds are followed up step by step: not beyond the end
         let certain = self.current.certified && self.trial.certified;
         let h = if certain { h } else { self.end_at_bound(h) };
-        let Self { core, current, trial, detector, .. } = self;
+        let longest = self.size.longest(self.current.length);
+        let Self { core, previous, current, trial, detector, .. } = self;
+        let (before, a, b) = (&*previous, &*current, &*trial);
+        let range = core.weights.parameter;
+        let step = Stretch { before, past: self.past, a, b, h, longest, range };
+        if !final_say && step.hides_pair() {
+            return Err(Refusal::Unresolved);
+        }
         detector.detect(current, trial, h, core.weights.parameter, final_say)?;
         let s_trial = self.s + self.metric_distance();
         // before the location, whose result is left in the same work space
@@ -540,7 +550,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         self.s = s_trial;
         std::mem::swap(&mut self.previous, &mut self.current);
         std::mem::swap(&mut self.current, &mut self.trial);
-        self.previous_h = h;
+        (self.previous_h, self.past) = (h, h);
         self.rescale(h);
         if !self.left_start {
             let away = self.core.excursion(&self.current.u, &self.start.u);

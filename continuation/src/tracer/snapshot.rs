@@ -19,6 +19,8 @@ pub(crate) struct Snapshot {
     start: State,
     previous: State,
     previous_h: f64,
+    #[serde(default)]
+    past: f64,
     current: State,
     left_start: bool,
     departure: Option<Departure>,
@@ -53,6 +55,7 @@ impl<P: Problem> Tracer<'_, P> {
             start: self.start.clone(),
             previous: self.previous.clone(),
             previous_h: self.previous_h,
+            past: self.past,
             current: self.current.clone(),
             left_start: self.left_start,
             departure: self.departure.clone(),
@@ -95,6 +98,7 @@ impl<P: Problem> Tracer<'_, P> {
         self.start = from.start;
         self.previous = from.previous;
         self.previous_h = from.previous_h;
+        self.past = from.past;
         self.trial = from.current.clone();
         self.work = from.current.clone();
         self.current = from.current;

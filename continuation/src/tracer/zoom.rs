@@ -91,6 +91,7 @@ impl<P: Problem> Tracer<'_, P> {
         let norm = weights.norm(&x.mtu, &x.tu, x.tp);
         x.scale_tangent(1.0 / norm);
         self.size.h *= norm;
+        self.past *= norm;
         self.previous_h = 0.0;
     }
 }
