@@ -54,6 +54,9 @@ pub enum StopReason {
     MaxPoints,
     /// No step longer than the smallest was acceptable.
     StepTooSmall,
+    /// The unknowns grow without bound while the parameter comes to rest: to more than 1e7 times
+    /// their size at the start, or 1e7 if that is less than 1.
+    Unbounded,
     /// The branch came back over its start, against its direction.
     ReturnedToStart,
     /// The branch goes on as one that is known already ([`crate::diagram`]).
@@ -78,6 +81,7 @@ impl fmt::Display for StopReason {
             StopReason::Domain => "domain",
             StopReason::MaxPoints => "max-points",
             StopReason::StepTooSmall => "step-too-small",
+            StopReason::Unbounded => "unbounded",
             StopReason::ReturnedToStart => "returned-to-start",
             StopReason::Retraced => "retraced",
             StopReason::Interrupted => "interrupted",

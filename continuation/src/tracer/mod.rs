@@ -26,6 +26,7 @@ mod restart;
 mod snapshot;
 mod special;
 mod switching;
+mod unbounded;
 mod zoom;
 
 pub use both_ways::both_ways;
@@ -65,6 +66,8 @@ pub struct Tracer<'a, P: Problem> {
     // where the other half of the branch ended for want of points, if this is a second half
     finish: Option<State>,
     start_p: Vec<f64>,
+    // size of the unknowns by which their growth is measured
+    extent: f64,
     previous: State,
     // scaled length of the last step; 0 when `previous` says nothing about the curvature
     previous_h: f64,
@@ -176,7 +179,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
 
     /// The tracer that stands at `start`.
     fn set_up(
-        core: Core<'a, P>,
+        mut core: Core<'a, P>,
         start: State,
         p: &[f64],
         settings: Settings,
@@ -185,6 +188,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let problem = core.problem;
         let size = StepSize::new(&settings, range / core.weights.parameter, start.length);
         let detector = detector(problem, &[], &settings)?;
+        let extent = unbounded::extent(&mut core, &start);
         let mut tracer = Tracer {
             core,
             settings,
@@ -192,6 +196,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             size,
             finish: None,
             start_p: p.to_vec(),
+            extent,
             previous: start.clone(),
             previous_h: 0.0,
             past: 0.0,
@@ -552,6 +557,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         std::mem::swap(&mut self.current, &mut self.trial);
         (self.previous_h, self.past) = (h, h);
         self.rescale(h);
+        self.check_bounded();
         if !self.left_start {
             let away = self.core.excursion(&self.current.u, &self.start.u);
             self.left_start =
