@@ -62,7 +62,7 @@ pub struct Settings {
     pub increasing: Option<bool>,
     /// Longest step; `None`: a twentieth of the parameter's range in scaled arclength.
     pub max_step: Option<f64>,
-    /// Shortest step; `None`: 1e-7 of the parameter's range in scaled arclength.
+    /// Shortest step; `None`: 1e-10 of the parameter's range in scaled arclength.
     pub min_step: Option<f64>,
     /// First step; `None`: a tenth of the longest.
     pub first_step: Option<f64>,

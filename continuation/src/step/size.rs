@@ -37,7 +37,7 @@ impl StepSize {
     /// Shortest scaled step.
     pub(crate) fn shortest(&self, length: f64) -> f64 {
         let most = self.longest.map_or(f64::INFINITY, |s| 1e-3 * s / length);
-        self.shortest.map_or((1e-7 * self.range).min(most), |s| s / length)
+        self.shortest.map_or((1e-10 * self.range).min(most), |s| s / length)
     }
 
     /// Below this scaled length a step is so short that what it still shows is real.
