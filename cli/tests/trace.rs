@@ -61,6 +61,35 @@ fn where_the_dimples_meet_the_trace_stops_and_keeps_its_results() {
 }
 
 #[test]
+fn a_branch_that_leads_the_plate_away_ends_at_a_far_limit() {
+    let place = tempfile::tempdir().unwrap();
+    let case = "problem = \"contact\"
+        [shell]
+        law = \"skalak\"
+        poisson = 0.21649336055526724
+        [dimensionless]
+        bending = 0.0006590882581160481
+        pressure = 0.0
+        adhesion = 2.7827605414952284e-05
+        film = 0.09408600860650465
+        surface_tension = 1.0565392785199967
+        gas_exponent = 0.0
+        [mesh]
+        elements = 100
+        grading = 10.533209817471288
+        [path]
+        start = 1.6153586247219722
+        end = 0.4654094279780276";
+    std::fs::write(place.path().join("case.toml"), case).unwrap();
+    let output = arclen(place.path(), &["trace", "case.toml", "--no-pictures", "--out", "o"]);
+    assert_eq!(output.status.code(), Some(0));
+    let json = events(&place.path().join("o"));
+    assert_eq!(json["stopped_because"], "domain");
+    let detail = json["stopped_detail"].as_str().unwrap();
+    assert!(detail.contains("led the plate away from its end"), "{detail}");
+}
+
+#[test]
 fn the_limit_of_points_is_kept_and_said() {
     let place = tempfile::tempdir().unwrap();
     let arguments =

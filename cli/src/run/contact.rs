@@ -7,7 +7,7 @@ use super::{Observer, RunError, listen, settings};
 use crate::case::{ContactCase, DeviceCase, Law, ResolvedCase};
 use crate::output::{Cell, ContactRow, EventRecord, MaxwellRecord, Pictures, Table, TraceResult};
 use crate::pictures::{self, Curve, Mark, Profile, Shape};
-use continuation::{Event, Point, Problem, Settings, TraceError};
+use continuation::{Event, Point, Problem, Settings, StopReason, TraceError};
 use shell_contact::device::{MaxwellPoint, StartError, maxwell_points, trace_loaded};
 use shell_contact::{ContactBranch, ContactProblem, Device, LoadedProblem};
 use shell_contact::{Dimensionless, Mesh, Shell, trace_contact};
@@ -98,10 +98,36 @@ pub(crate) fn branch(
     observer: &mut Observer<'_>,
 ) -> Result<(ContactProblem, ContactBranch), RunError> {
     let problem = shell(case, contact)?;
-    let start = case.path.start;
-    let traced = trace_contact(&problem, start, path(case), &mut listen(observer))
-        .map_err(|detail| no_start(case, detail))?;
+    let traced = held(case, &problem, observer)?;
     Ok((problem, traced))
+}
+
+/// The branch under plates that are held. It ends too where they have gone as far behind their start
+/// as the end lies before it, or one radius if that is more: a branch that turned back at a fold may
+/// lead away without an end.
+fn held(
+    case: &ResolvedCase,
+    problem: &ContactProblem,
+    observer: &mut Observer<'_>,
+) -> Result<ContactBranch, RunError> {
+    let (start, end) = (case.path.start, case.path.end);
+    let way = (end - start).abs().max(1.0);
+    let (limit, domain) = if end < start {
+        (start + way, (f64::NEG_INFINITY, start + way))
+    } else {
+        (start - way, (start - way, f64::INFINITY))
+    };
+    let settings = Settings { domain: Some(domain), ..path(case) };
+    let mut traced = trace_contact(problem, start, settings, &mut listen(observer))
+        .map_err(|detail| no_start(case, detail))?;
+    let stopped = &mut traced.branch.stopped;
+    if stopped.reason == StopReason::Domain {
+        stopped.detail = format!(
+            "the branch turned back and led the plate away from its end, to z0 = {limit}, the far \
+             limit of a trace from {start} to {end}"
+        );
+    }
+    Ok(traced)
 }
 
 /// The branch in the device's parameter, and its Maxwell points.
@@ -111,14 +137,13 @@ pub(super) fn follow(
     problem: &ContactProblem,
     observer: &mut Observer<'_>,
 ) -> Result<(ContactBranch, Vec<MaxwellRecord>), RunError> {
-    let (start, listen) = (case.path.start, &mut listen(observer));
     let (traced, points) = if device == Device::Grip {
-        let traced = trace_contact(problem, start, path(case), listen)
-            .map_err(|detail| no_start(case, detail))?;
+        let traced = held(case, problem, observer)?;
         let points = maxwell_points(problem, &traced.branch);
         (traced, points)
     } else {
         let loaded = LoadedProblem::new(problem, device).map_err(|e| not_held(case, e.into()))?;
+        let (start, listen) = (case.path.start, &mut listen(observer));
         let traced = trace_loaded(&loaded, start, loaded_path(case), listen)
             .map_err(|detail| not_held(case, detail))?;
         let points = maxwell_points(&loaded, &traced.branch);
