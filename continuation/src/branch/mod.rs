@@ -54,6 +54,9 @@ pub enum StopReason {
     MaxPoints,
     /// No step longer than the smallest was acceptable.
     StepTooSmall,
+    /// Another branch passes so closely that the two cannot be told apart; the detail says how
+    /// closely.
+    BranchesTooClose,
     /// The unknowns grow without bound while the parameter comes to rest: to more than 1e7 times
     /// their size at the start, or 1e7 if that is less than 1.
     Unbounded,
@@ -81,6 +84,7 @@ impl fmt::Display for StopReason {
             StopReason::Domain => "domain",
             StopReason::MaxPoints => "max-points",
             StopReason::StepTooSmall => "step-too-small",
+            StopReason::BranchesTooClose => "branches-too-close",
             StopReason::Unbounded => "unbounded",
             StopReason::ReturnedToStart => "returned-to-start",
             StopReason::Retraced => "retraced",

@@ -56,8 +56,20 @@ impl Stretch<'_> {
         !fold && self.hides_folds() || self.hides_pairs() || {
             // a pitchfork met from its side touches zero by itself
             let explained = fold || a.orientation != b.orientation;
-            !explained && self.same_counts() && self.touches(|x| x.real)
+            !explained && self.same_counts() && (self.touches(|x| x.real) || self.bounces())
         }
+    }
+
+    /// Whether the real eigenvalue nearest to zero, going on as before, would pass zero, and does not:
+    /// it turns there, or the step has gone over to another branch, where branches cross.
+    fn bounces(&self) -> bool {
+        let Stretch { before, past, a, b, h, .. } = *self;
+        let expected = a.real + (a.real - before.real) * h / past;
+        past > 0.0
+            && before.pairs == a.pairs
+            && before.real * a.real > 0.0
+            && a.real * b.real > 0.0
+            && expected * a.real < 0.0
     }
 
     fn same_counts(&self) -> bool {

@@ -44,6 +44,9 @@ pub(crate) enum Failure {
     /// The kernel is smaller than was asked for: these are estimates of the points, near to each
     /// other, where it has one dimension.
     Apart(Vec<Extended>),
+    /// There is none: beside the step two branches come this close to each other, in the problem's
+    /// metric.
+    Close(f64),
 }
 
 impl From<EvalError> for Failure {

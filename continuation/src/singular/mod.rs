@@ -9,6 +9,7 @@ mod defect;
 mod deficient;
 mod fold;
 mod forms;
+mod gap;
 mod hopf;
 mod kernel;
 mod multiple;
@@ -34,8 +35,7 @@ use kernel::Failure;
 
 pub(crate) use crate::linalg::max_abs;
 
-/// A gap, in natural amplitudes, above which a branch point is not one: the branches turn away
-/// from each other, and each can be followed.
+/// A gap, in natural amplitudes, above which a symmetry that makes a larger kernel is broken.
 const MAX_GAP: f64 = 1e-6;
 /// Distance from the interpolated branch, relative to the step, above which a point is not on it.
 const MAX_OFF: f64 = 0.1;
@@ -91,6 +91,10 @@ pub(crate) fn locate_branch_points<P: Problem>(
         match attempt(core, &mut probe, segment, &z, k, &mut x) {
             Ok(crossed) => found = Some(vec![crossed]),
             Err(Failure::Evaluation(error)) => refusal = Refusal::Evaluation(error),
+            Err(Failure::Close(gap)) => {
+                refusal = Refusal::BranchesClose { gap };
+                break;
+            }
             Err(Failure::Apart(seeds)) if seeds.len() == k => {
                 let one = |z: &Extended| attempt(core, &mut probe, segment, z, 1, &mut x).ok();
                 found = distinct(seeds.iter().map_while(one).collect(), k);
@@ -131,11 +135,16 @@ fn attempt<P: Problem>(
     let seed = along(probe, z).clamp(0.0, h);
     let tangent = tangent_at(probe, a, b, h, bend, seed);
     let mut found = kernel::find(probe, z, &tangent, k)?;
-    // a residual no larger than that of a converged state says nothing of a gap
-    let noise = 8.0 * (a.u.len() as f64).sqrt() * core.residual(a).map_err(Failure::Evaluation)?;
-    let gap = if found.unfolding > noise { found.gap } else { 0.0 };
-    if gap > MAX_GAP || (gap > 0.0 && !final_say) {
-        return Err(Failure::NoConvergence);
+    let mut gap = 0.0;
+    if k > 1 {
+        // a residual no larger than that of a converged state says nothing of a gap
+        let residual = core.residual(a).map_err(Failure::Evaluation)?;
+        if found.unfolding > 8.0 * (a.u.len() as f64).sqrt() * residual {
+            gap = found.gap;
+        }
+        if gap > MAX_GAP || (gap > 0.0 && !final_say) {
+            return Err(Failure::NoConvergence);
+        }
     }
     // on this branch, within this step
     let from = |s: &State, z: &Extended| {
@@ -145,6 +154,17 @@ fn attempt<P: Problem>(
     };
     let from_a = from(a, &found.z);
     let at = along(probe, &found.z);
+    let apart = if k == 1 { gap::between_branches(probe, &found)? } else { 0.0 };
+    if apart > 0.0 {
+        let beside = (-h..=2.0 * h).contains(&at);
+        interpolate(a, b, h, bend, at.clamp(0.0, h), x);
+        let off = probe.norm(&from(x, &found.z));
+        return Err(if beside && off <= 2.0 * h && apart.is_finite() {
+            Failure::Close(apart * a.length)
+        } else {
+            Failure::NoConvergence
+        });
+    }
     if !(-1e-6 * h..=h * (1.0 + 1e-6)).contains(&at) {
         return Err(Failure::NoConvergence);
     }

@@ -112,6 +112,13 @@ impl<'a, P: Problem> Probe<'a, P> {
         check_finite(&self.by_parameter)
     }
 
+    /// The residual alone, at `z`.
+    pub(crate) fn residual_at(&mut self, z: &Extended) -> Result<&[f64], EvalError> {
+        self.p[self.which.0] = z.p;
+        self.problem.residual(&z.u, &self.p, &mut self.product)?;
+        Ok(&self.product)
+    }
+
     /// `x` as a covector of the scaled metric.
     pub(crate) fn covector(&mut self, x: &Extended) -> Extended {
         let Weights { unknowns, parameter } = self.weights;

@@ -173,16 +173,7 @@ impl<'a, P: Problem> Core<'a, P> {
             let facts = self.bordered.factor(&mut self.jacobian);
             self.facts = Some(facts);
             let rounding = self.residual_is_rounding(x);
-            let mut g = [match constraint {
-                Constraint::Plane(base, distance) => {
-                    let du = x.u.iter().zip(&base.u).zip(&base.mtu);
-                    let along: f64 = du.map(|((u, u0), m)| (u - u0) * m).sum();
-                    along / (w.unknowns * w.unknowns)
-                        + base.tp * (x.p - base.p) / (w.parameter * w.parameter)
-                        - distance
-                }
-                Constraint::Parameter(_, value) => x.p - value,
-            }];
+            let mut g = [self.miss(constraint, x)];
             self.du.copy_from_slice(&self.r);
             self.bordered.solve(&mut self.jacobian, &mut self.du, &mut g);
             self.problem.metric(&self.du, &mut self.mdu);
@@ -574,6 +565,35 @@ impl<'a, P: Problem> Core<'a, P> {
             if distance > 0.0 { along / distance } else { 1.0 }
         };
         (distance, at(a), at(b))
+    }
+
+    /// How far the latest factors say that `x` is from the branch in a plane, in the scaled metric.
+    pub(super) fn distance_from_branch(
+        &mut self,
+        constraint: Constraint<'_>,
+        x: &State,
+    ) -> Result<f64, Refusal> {
+        self.residual(x).map_err(Refusal::Evaluation)?;
+        self.du.copy_from_slice(&self.r);
+        let mut g = [self.miss(constraint, x)];
+        self.bordered.solve(&mut self.jacobian, &mut self.du, &mut g);
+        self.problem.metric(&self.du, &mut self.mdu);
+        Ok(self.weights.norm(&self.mdu, &self.du, g[0]))
+    }
+
+    /// What the constraint still misses at `x`.
+    fn miss(&self, constraint: Constraint<'_>, x: &State) -> f64 {
+        let w = self.weights;
+        match constraint {
+            Constraint::Plane(base, distance) => {
+                let du = x.u.iter().zip(&base.u).zip(&base.mtu);
+                let along: f64 = du.map(|((u, u0), m)| (u - u0) * m).sum();
+                along / (w.unknowns * w.unknowns)
+                    + base.tp * (x.p - base.p) / (w.parameter * w.parameter)
+                    - distance
+            }
+            Constraint::Parameter(_, value) => x.p - value,
+        }
     }
 
     /// Length of `u - u0` in the problem's metric.

@@ -1,5 +1,6 @@
 //! One step along a branch: predict, correct, judge; accepted, or refused with a reason.
 
+mod corner;
 mod corrector;
 mod guard;
 mod judge;
@@ -49,6 +50,13 @@ pub enum Refusal {
     /// The orientation of the branch changed: a branch point, a jump or a reversal.
     #[error("the orientation of the branch changes within the step")]
     Orientation,
+    /// The orientation changes though there is no branch point: two branches pass each other so
+    /// closely that the step jumps from one to the other.
+    #[error("the step jumps to another branch, {gap:.1e} away")]
+    BranchesClose {
+        /// Distance between the branches, in the problem's metric.
+        gap: f64,
+    },
     /// The step ends on a special point, where the sides of it cannot be told apart.
     #[error("the step ends on a special point")]
     OnSpecialPoint,

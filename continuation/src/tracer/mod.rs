@@ -18,6 +18,7 @@
 mod begin;
 mod both_ways;
 mod bound;
+mod close;
 mod closure;
 mod examine;
 mod input;
@@ -369,7 +370,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
                 }
                 Err(refusal) => {
                     self.core.statistics.rejected += 1;
-                    if refusal == Refusal::Orientation {
+                    if matches!(refusal, Refusal::Orientation | Refusal::BranchesClose { .. }) {
                         self.crossing = Some(h);
                         self.anchor.copy_from(&self.current);
                         self.anchor_s = self.s;
@@ -385,18 +386,15 @@ impl<'a, P: Problem> Tracer<'a, P> {
                         length = self.current.length;
                         shortest = self.size.shortest(length);
                     }
-                    if h < shortest && self.leap(&refusal) {
-                        return;
-                    }
                     if h < shortest {
-                        let p = self.current.p;
-                        let name = self.core.problem.parameters()[self.core.which.0].name;
-                        let mut detail = format!(
-                            "at {name} = {p:.10} steps from {:.1e} down to {:.1e} were refused, \
-                             the last because: {refusal}",
-                            first,
-                            2.0 * h * length,
-                        );
+                        let mut detail = match self.cross(&refusal) {
+                            Ok(()) => return,
+                            Err(Some(gap)) => {
+                                let detail = self.too_close(gap, &refusal);
+                                return self.end(StopReason::BranchesTooClose, detail);
+                            }
+                            Err(None) => self.too_small(first, 2.0 * h * length, &refusal),
+                        };
                         if let Some(wrong) = self.core.wrong_derivative(&self.current) {
                             detail = format!("{detail}; {wrong}");
                         }
@@ -405,29 +403,6 @@ impl<'a, P: Problem> Tracer<'a, P> {
                 }
             }
         }
-    }
-
-    /// Where steps fail at every length though a longer one had reached a state of the other
-    /// orientation, the branch runs into a branch point that is imperfect by less than can be
-    /// followed. The shortest step that did cross is taken, and marks the branch point.
-    fn leap(&mut self, refusal: &Refusal) -> bool {
-        if matches!(refusal, Refusal::Evaluation(_) | Refusal::Meeting) {
-            return false;
-        }
-        let Some(h) = self.crossing.take() else { return false };
-        if self.s - self.anchor_s > 2.0 * h * self.anchor.length {
-            return false;
-        }
-        std::mem::swap(&mut self.current, &mut self.anchor);
-        (self.previous_h, self.past) = (0.0, 0.0);
-        // the corner blurs short steps; longer ones see the crossing branches only
-        let longest = self.size.longest(self.current.length);
-        let lengths = [1.0, 8.0, 64.0, 512.0].map(|factor| factor * h);
-        if lengths.into_iter().any(|h| h <= longest && self.attempt(h, true).is_ok()) {
-            return true;
-        }
-        std::mem::swap(&mut self.current, &mut self.anchor);
-        false
     }
 
     /// Tries a step of scaled length `h`.
@@ -446,6 +421,9 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let secant = core.secant(current, trial);
         let tangents = core.weights.dot(&current.mtu, current.tp, &trial.tu, trial.tp);
         let quality = judge(settings, trial, h, &corrected, secant, tangents)?;
+        if !final_say && core.cuts_a_corner((current, trial), h, &quality, secant, tangents)? {
+            return Err(Refusal::Turn { angle: quality.angle });
+        }
         if let Some(separation) = core.separation(trial)? {
             self.separation = self.separation.max(separation);
             if separation < MEETING * self.separation {

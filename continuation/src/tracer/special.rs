@@ -1,6 +1,7 @@
 //! Special points of a step: located one after the other, then recorded.
 
 use super::Tracer;
+use super::close::passes_through;
 use crate::branch::{Detail, Eigenvector, Event, EventKind, StopReason};
 use crate::events::{Candidate, Located, Role, locate, locate_watched};
 use crate::problem::Problem;
@@ -183,7 +184,9 @@ impl<P: Problem> Tracer<'_, P> {
         };
         match locate_branch_points(core, a, b, h, kernel, &SEEDS, final_say) {
             Ok(found) => located.extend(found.into_iter().map(special)),
-            Err(refusal) if !final_say => return Err(refusal),
+            Err(refusal) if !final_say || matches!(refusal, Refusal::BranchesClose { .. }) => {
+                return Err(refusal);
+            }
             // a count that is not certain may have changed without a reason
             Err(_) if kernel > 1 && !(a.certified && b.certified) => {
                 self.detector.doubt_count();
@@ -191,17 +194,16 @@ impl<P: Problem> Tracer<'_, P> {
             // steps cannot become shorter: as near as bisection comes
             Err(_) => {
                 let tolerance = settings.event_tolerance;
-                let place = match locate(core, a, b, h, &candidate, tolerance, work) {
-                    Ok(place) => place,
-                    Err(_) => {
-                        work.copy_from(b);
-                        Located { at: h, error: h }
-                    }
-                };
+                let place = locate(core, a, b, h, &candidate, tolerance, work)?;
+                passes_through(core, a, b, h, place)?;
                 let seeds = [place.at / h];
-                if let Ok(found) = locate_branch_points(core, a, b, h, kernel, &seeds, true) {
-                    located.extend(found.into_iter().map(special));
-                    return Ok(());
+                match locate_branch_points(core, a, b, h, kernel, &seeds, true) {
+                    Ok(found) => {
+                        located.extend(found.into_iter().map(special));
+                        return Ok(());
+                    }
+                    Err(refusal @ Refusal::BranchesClose { .. }) => return Err(refusal),
+                    Err(_) => {}
                 }
                 let state = work.clone();
                 let (detail, eigenvectors) = (Detail::None, Vec::new());
