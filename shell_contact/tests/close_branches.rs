@@ -1,0 +1,68 @@
+//! Very thin shells, whose branches nearly touch and whose folds are sharp.
+
+#![allow(clippy::unwrap_used)]
+
+use continuation::{EventKind, Settings, StopReason};
+use shell_contact::{
+    ContactBranch, ContactProblem, Dimensionless, Law, Mesh, Shell, trace_contact,
+};
+use std::ops::ControlFlow;
+
+fn trace(problem: &ContactProblem, start: f64, settings: Settings) -> ContactBranch {
+    trace_contact(problem, start, settings, &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+/// Pitchforks that are imperfect by little more than rounding: the same end at every step length, not
+/// another branch at each.
+#[test]
+fn no_step_length_jumps_across_the_gap_of_an_imperfect_pitchfork() {
+    let shell = Shell { law: Law::Skalak, poisson: 0.4 };
+    let groups = Dimensionless {
+        bending: 1.5e-6,
+        pressure: 3e-4,
+        adhesion: 2e-5,
+        film: 0.013,
+        surface_tension: 0.0375,
+        gas_exponent: 0.0,
+    };
+    let problem = ContactProblem::new(&shell, &groups, Mesh::uniform(200).unwrap()).unwrap();
+    let mut ends = Vec::new();
+    for max_step in [0.001, 0.005, 0.01, 0.02] {
+        let settings =
+            Settings { target: Some(0.74), max_step: Some(max_step), ..Settings::default() };
+        let branch = trace(&problem, 1.9, settings).branch;
+        let stopped = &branch.stopped;
+        assert_eq!(stopped.reason, StopReason::BranchesTooClose, "{max_step}: {stopped:?}");
+        assert!(branch.events_of(&EventKind::BranchPoint).next().is_none(), "{max_step}");
+        ends.push(branch.points.last().unwrap().p);
+    }
+    for end in &ends {
+        assert!((end / ends[0] - 1.0).abs() < 1e-6, "{ends:?}");
+    }
+}
+
+/// Folds sharper than 1e-7 of the range are passed with the default settings.
+#[test]
+fn needle_sharp_folds_are_passed_at_default_steps() {
+    let shell = Shell { law: Law::Hooke, poisson: 0.5 };
+    let groups = Dimensionless {
+        bending: 3.838_803_467_874_241e-6,
+        pressure: 0.003_634_460_293_314_932_6,
+        adhesion: 4.618_002_714_548_425e-8,
+        film: 0.050_238_855_723_206_63,
+        surface_tension: 0.0,
+        gas_exponent: 1.4,
+    };
+    let mesh = Mesh::graded(134, 3.963_359_478_191_135_7).unwrap();
+    let problem = ContactProblem::new(&shell, &groups, mesh).unwrap();
+    let target = Some(0.280_330_732_762_804);
+    let settings = Settings { target, max_step: Some(0.01), ..Settings::default() };
+    let branch = trace(&problem, 1.554_895_376_327_445_1, settings).branch;
+    assert_eq!(branch.stopped.reason, StopReason::Target, "{:?}", branch.stopped);
+    let folds: Vec<f64> = branch.events_of(&EventKind::Fold).map(|e| e.p).collect();
+    let known = [0.514_322_191, 0.769_834_865, 0.467_338_316, 0.547_389_86, 0.298_175_598];
+    assert_eq!(folds.len(), 6, "{folds:?}");
+    for (fold, known) in folds.iter().zip(known) {
+        assert!((fold - known).abs() < 1e-8, "{folds:?}");
+    }
+}
