@@ -9,9 +9,9 @@ use crate::problem::Problem;
 use crate::step::{Core, State};
 
 /// Growth of the unknowns beyond which a branch goes to infinity. At `u = c / (p − p₀)` a rounding error of
-/// the parameter then moves the branch by a part 1e-9 of itself; ten times farther the corrector no
-/// longer settles.
-const UNBOUNDED: f64 = 1e7;
+/// the parameter then moves the branch by a part 1e-10 of itself; ten to a hundred times farther the
+/// corrector no longer settles.
+const UNBOUNDED: f64 = 1e6;
 /// The parameter's part of the tangent, in its scale, below which the growth does not take it along.
 const COMES_TO_REST: f64 = 1e-3;
 
