@@ -91,6 +91,7 @@ impl Serialize for EventOf<'_> {
         entry(&mut map, "multiplicity", form.multiplicity)?;
         entry(&mut map, "branches", form.branches)?;
         entry(&mut map, "curvature", form.curvature)?;
+        entry(&mut map, "order", form.order)?;
         entry(&mut map, "frequency", form.frequency)?;
         entry(&mut map, "lyapunov", form.lyapunov)?;
         entry(&mut map, "lyapunov_error", form.lyapunov_error)?;

@@ -342,6 +342,8 @@ pub(crate) struct FormRecord {
     pub(crate) branches: Option<usize>,
     /// Second derivative of the parameter by the arclength, at a fold or along a pitchfork.
     pub(crate) curvature: Option<f64>,
+    /// The power with which the parameter turns at a fold, where that is above two.
+    pub(crate) order: Option<usize>,
     /// Imaginary part of the critical eigenvalues of a Hopf point.
     pub(crate) frequency: Option<f64>,
     /// Its first Lyapunov coefficient.

@@ -16,7 +16,10 @@ pub(super) fn form(branch: &Branch, event: &Event) -> FormRecord {
     let unstable = event.unstable_before.is_some();
     let base = FormRecord { certified: certified.filter(|_| unstable), ..FormRecord::default() };
     match &event.detail {
-        Detail::Fold(fold) => FormRecord { curvature: Some(fold.curvature), ..base },
+        Detail::Fold(fold) => {
+            let order = fold.order.filter(|order| *order > 2);
+            FormRecord { curvature: Some(fold.curvature), order, ..base }
+        }
         Detail::Crossing(crossing) => FormRecord {
             kind: Some(match crossing.shape {
                 Shape::Transcritical => "transcritical",

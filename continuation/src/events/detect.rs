@@ -28,6 +28,17 @@ pub(crate) enum Candidate {
     Parameter { value: f64, role: Role },
 }
 
+/// What becomes of a step that ends where the parameter stands still to rounding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Plateau {
+    /// It is refused: a longer one may reach the other side.
+    Refuse,
+    /// The same, and the parameter is not expected to be resolved on the way.
+    Cross,
+    /// It is taken: the branch goes on like that.
+    Enter,
+}
+
 /// Why the parameter's value matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
@@ -85,6 +96,7 @@ pub(crate) struct Detector {
     futile: usize,
     // what the latest step leaves open
     doubt: Option<&'static str>,
+    plateau: Plateau,
 }
 
 /// Which eigenvalues beside the critical ones make an event when they cross the imaginary axis.
@@ -160,12 +172,18 @@ impl Detector {
             separate: false,
             futile: 0,
             doubt: None,
+            plateau: Plateau::Refuse,
         })
     }
 
     /// Says whether stability is read from another matrix than the Jacobian.
     pub(crate) fn with_separate_stability(self, separate: bool) -> Self {
         Detector { separate, ..self }
+    }
+
+    /// Says what becomes of steps onto a plateau of the parameter.
+    pub(crate) fn set_plateau(&mut self, plateau: Plateau) {
+        self.plateau = plateau;
     }
 
     /// The observables that are watched.
@@ -214,13 +232,16 @@ impl Detector {
         self.doubt = None;
         let p = Cubic { h, g: [a.p, b.p], s: [a.tp, b.tp] };
         // where the parameter stands still to rounding, its turns are noise
-        let vertical = a.tp.abs().max(b.tp.abs()) < VERTICAL * range;
+        let still = [a, b].map(|x| x.tp.abs() < VERTICAL * range);
+        let vertical = still == [true, true];
         let into_noise = b.tp.abs() < NOISE * range;
-        if into_noise && !vertical && !final_say && self.extended.is_none() {
-            return Err(Refusal::Unresolved);
+        let enters = still == [false, true] && self.plateau != Plateau::Enter;
+        if enters && !final_say && self.extended.is_none() {
+            return Err(Refusal::Plateau);
         }
         let fold = crosses(a.tp, b.tp) && !vertical && !into_noise;
-        if !final_say && !vertical && self.parameter_unresolved(&p) {
+        let resolved = self.plateau == Plateau::Cross || !self.parameter_unresolved(&p);
+        if !final_say && !vertical && !resolved {
             return Err(Refusal::Unresolved);
         }
         if let Some(beside) = self.extended {
@@ -321,8 +342,9 @@ impl Detector {
             return Ok(());
         }
         // a pair that meets on the real axis on the way may have crossed the imaginary one
-        // first, hidden by a fold
-        if change > 0 && a.pairs != b.pairs && !final_say {
+        // first, hidden by a fold; across a plateau the step cannot be shorter
+        let across = self.plateau == Plateau::Cross && fold && change == 1;
+        if change > 0 && a.pairs != b.pairs && !final_say && !across {
             return Err(Refusal::Stability);
         }
         let pairs = a.unstable_pairs.abs_diff(b.unstable_pairs);

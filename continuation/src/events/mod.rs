@@ -2,13 +2,15 @@
 
 mod detect;
 mod extrapolate;
+mod flat;
 mod hermite;
 mod locate;
 mod root;
 mod watched;
 
-pub(crate) use detect::{Beside, Candidate, Detector, Role};
+pub(crate) use detect::{Beside, Candidate, Detector, Plateau, Role};
 pub(crate) use extrapolate::Stretch;
+pub(crate) use flat::flat_fold;
 pub(crate) use hermite::basis;
 pub(crate) use locate::{Located, bend, interpolate, locate};
 pub(crate) use watched::locate_watched;

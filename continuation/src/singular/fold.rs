@@ -6,8 +6,8 @@ use crate::branch::FoldForm;
 use crate::problem::{EvalError, Problem};
 use crate::step::{State, dot};
 
-/// `p″ = −ψᵀ F_zz[t, t] / ψᵀ F_p` along the unit tangent `t`, with `left` = `ψ / ψᵀ F_p`; and how far
-/// errors of the problem's derivatives may have moved the fold, as a scaled length.
+/// `p″ = −ψᵀ F_zz[t, t] / ψᵀ F_p` along the unit tangent `t`, with `left` = `ψ / ψᵀ F_p`; and a bound of
+/// what errors of the problem's derivatives do to dp/ds.
 pub(crate) fn fold_form<P: Problem>(
     probe: &mut Probe<'_, P>,
     x: &State,
@@ -21,11 +21,10 @@ pub(crate) fn fold_form<P: Problem>(
     })?;
     let Some(bent) = bent else { return Err(EvalError::NotFinite { at: 0 }) };
     let along = bent.value;
-    // what errors of the derivatives do to dp/ds, and so to its zero
     let missed = probe.derivative_error(&z, &t)?;
     let missed: f64 = missed.iter().zip(left).map(|(e, w)| e * w.abs()).sum();
-    let moved = if missed > 0.0 { missed / along.abs() } else { 0.0 };
     let square = x.length * x.length;
-    let form = FoldForm { curvature: along / square, curvature_error: bent.error / square };
-    Ok((form, moved))
+    let order = bent.is_signed().then_some(2);
+    let form = FoldForm { curvature: along / square, curvature_error: bent.error / square, order };
+    Ok((form, missed))
 }

@@ -73,6 +73,10 @@ pub enum Refusal {
     /// An observable or the parameter varies too much for its events to be told apart.
     #[error("an observed function is not resolved by the step")]
     Unresolved,
+    /// The step ends where the parameter stands still to rounding, so that a fold cannot be told from
+    /// none.
+    #[error("the parameter stands still to rounding at the end of the step")]
+    Plateau,
     /// More than one special point in the step.
     #[error("more than one special point within the step")]
     SeveralEvents,

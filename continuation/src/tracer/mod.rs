@@ -23,6 +23,7 @@ mod closure;
 mod examine;
 mod input;
 mod narrow;
+mod plateau;
 mod restart;
 mod snapshot;
 mod special;
@@ -35,7 +36,7 @@ pub use input::{Progress, TraceError};
 pub(crate) use snapshot::Snapshot;
 
 use crate::branch::{Branch, Doubt, Event, Point, Statistics, Stop, StopReason};
-use crate::events::{Beside, Detector, Stretch, Watch};
+use crate::events::{Beside, Detector, Plateau, Stretch, Watch};
 use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem, Stability};
 use crate::settings::{Settings, SettingsError};
@@ -365,8 +366,14 @@ impl<'a, P: Problem> Tracer<'a, P> {
             match self.attempt(h, final_say) {
                 Ok(()) => {
                     self.core.statistics.accepted += 1;
+                    self.detector.set_plateau(Plateau::Refuse);
                     self.examine_derivatives();
                     return;
+                }
+                Err(Refusal::Plateau) => {
+                    if self.cross_plateau(h) {
+                        return;
+                    }
                 }
                 Err(refusal) => {
                     self.core.statistics.rejected += 1;

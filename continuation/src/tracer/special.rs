@@ -2,13 +2,15 @@
 
 use super::Tracer;
 use super::close::passes_through;
-use crate::branch::{Detail, Eigenvector, Event, EventKind, StopReason};
-use crate::events::{Candidate, Located, Role, locate, locate_watched};
+use crate::branch::{Detail, Eigenvector, Event, EventKind, FoldForm, StopReason};
+use crate::events::{
+    Candidate, Located, Role, bend, flat_fold, interpolate, locate, locate_watched,
+};
 use crate::problem::Problem;
 use crate::singular::{
     Crossed, SAME_PARAMETER, SEEDS, fold_form, locate_branch_points, locate_hopf,
 };
-use crate::step::{Refusal, State};
+use crate::step::{Constraint, Core, Precision, Refusal, State};
 
 /// Part of the step to which a Hopf point is bracketed before Newton's method takes over.
 const BRACKET: f64 = 1e-3;
@@ -20,6 +22,18 @@ pub(super) struct Special {
     pub(super) detail: Detail,
     pub(super) eigenvectors: Vec<Eigenvector>,
     pub(super) state: State,
+}
+
+/// A fold whose dp/ds is that many times flatter than the step's ends say may be of higher order.
+const FLAT: f64 = 1e-3;
+
+/// The normal form of the fold at `x`, and a bound of the error of dp/ds, both 0 where there is none.
+fn form_at_fold<P: Problem>(core: &mut Core<'_, P>, x: &State) -> (Option<FoldForm>, f64) {
+    let left = core.left_at_fold();
+    let mut probe = core.probe();
+    let form = fold_form(&mut probe, x, &left);
+    core.statistics.newton_iterations += probe.assemblies;
+    form.map_or((None, 0.0), |(form, missed)| (Some(form), missed))
 }
 
 impl<P: Problem> Tracer<'_, P> {
@@ -215,6 +229,9 @@ impl<P: Problem> Tracer<'_, P> {
 
     /// Locates a candidate other than a branch point.
     fn locate_one(&mut self, h: f64, candidate: &Candidate) -> Result<Special, Refusal> {
+        if *candidate == Candidate::Fold {
+            return self.locate_fold(h);
+        }
         let Self { core, current: a, trial: b, work, settings, .. } = self;
         let tolerance = settings.event_tolerance;
         let mut vector = None;
@@ -231,24 +248,41 @@ impl<P: Problem> Tracer<'_, P> {
                     None => (locate(core, a, b, h, candidate, tolerance, work)?, Detail::None),
                 }
             }
-            _ => {
-                let mut place = locate(core, a, b, h, candidate, tolerance, work)?;
-                let mut detail = Detail::None;
-                if *candidate == Candidate::Fold {
-                    vector = Eigenvector::real(work.tu.clone());
-                    let left = core.left_at_fold();
-                    let mut probe = core.probe();
-                    if let Ok((form, moved)) = fold_form(&mut probe, work, &left) {
-                        place.error += moved;
-                        detail = Detail::Fold(form);
-                    }
-                    core.statistics.newton_iterations += probe.assemblies;
-                }
-                (place, detail)
-            }
+            _ => (locate(core, a, b, h, candidate, tolerance, work)?, Detail::None),
         };
         let eigenvectors = vector.into_iter().collect();
         Ok(Special { candidate: *candidate, place, detail, eigenvectors, state: work.clone() })
+    }
+
+    /// Locates a fold, of whatever order.
+    fn locate_fold(&mut self, h: f64) -> Result<Special, Refusal> {
+        let candidate = Candidate::Fold;
+        let Self { core, current: a, trial: b, work, settings, .. } = self;
+        let mut place = locate(core, a, b, h, &candidate, settings.event_tolerance, work)?;
+        let (mut form, missed) = form_at_fold(core, work);
+        let blur = form.map_or(0.0, |form| (form.curvature * work.length.powi(2)).recip().abs());
+        let flat = h < FLAT * blur * (b.tp - a.tp).abs();
+        if flat || form.is_none_or(|form| form.order.is_none()) {
+            let found = flat_fold(core, (a, b), h, (place.at, missed), work)?;
+            if let Some(flat) = found.filter(|flat| flat.order > 2) {
+                place = Located { at: flat.at, error: flat.error };
+                interpolate(a, b, h, bend(core, a, b), place.at, work);
+                core.correct(Constraint::Plane(a, place.at), work, Precision::Event)?;
+                let spread = form.map_or(0.0, |form| form.curvature.abs() + form.curvature_error);
+                let order = Some(flat.order);
+                form = Some(FoldForm { curvature: 0.0, curvature_error: spread, order });
+            } else {
+                place.error += missed * blur;
+                // back to the fold
+                interpolate(a, b, h, bend(core, a, b), place.at, work);
+                core.correct(Constraint::Plane(a, place.at), work, Precision::Event)?;
+            }
+        } else {
+            place.error += missed * blur;
+        }
+        let eigenvectors = Eigenvector::real(work.tu.clone()).into_iter().collect();
+        let detail = form.map_or(Detail::None, Detail::Fold);
+        Ok(Special { candidate, place, detail, eigenvectors, state: work.clone() })
     }
 
     /// Whether zeros of the observable are special points of a curve.

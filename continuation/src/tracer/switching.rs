@@ -25,7 +25,16 @@ pub(super) struct Departure {
     old: Extended,
     /// `p − p₀` per square of the scaled step.
     bend: f64,
+    /// A state of the new branch where it is told apart: the scaled step to it, and what the
+    /// unknowns are there beyond the tangent.
+    #[serde(default)]
+    state: Option<(f64, Vec<f64>)>,
 }
+
+/// Turn, in radians, of a first step to such a state.
+const FAR_TURN: f64 = 0.8;
+/// Longest and shortest first step, as parts of the one to a state that tells branches apart.
+const APART: [f64; 2] = [1.0, 0.5];
 
 impl<'a, P: Problem> Tracer<'a, P> {
     /// Prepares a trace of a branch that leaves `branch` at one of its branch points, along
@@ -78,6 +87,9 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let at = branch.points.get(event.point).ok_or(foreign("it has no such point"))?;
         check("the branch point", &at.u, n)?;
         check("the direction", &direction.du, n)?;
+        if let Some(offset) = &direction.offset {
+            check("the direction's state", &offset.du, n)?;
+        }
         check("the parameter vector", &branch.parameters, parameters.len())?;
         let mut p = branch.parameters.clone();
         p[which] = at.p;
@@ -119,14 +131,23 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let bend = direction.bend * start.length * start.length;
         let mut tracer = Self::set_up(core, start, &p, settings, range)?;
         tracer.first = false;
-        tracer.departure = Some(Departure { old, bend });
+        let state = direction.offset.as_ref().map(|offset| {
+            // what curves is the same on the opposite side
+            let beyond = |(u, d): (&f64, &f64)| u - offset.multiple * d;
+            let beyond = offset.du.iter().zip(&direction.du).map(beyond).collect();
+            (offset.multiple / tracer.current.length, beyond)
+        });
+        tracer.departure = Some(Departure { old, bend, state });
         Ok(tracer)
     }
 
     /// The first step onto the new branch.
     pub(super) fn depart(&mut self, departure: &Departure) {
         let length = self.current.length;
-        let (first, shortest) = (self.size.h, self.size.shortest(length));
+        let (first, shortest) = match departure.state {
+            Some((to, _)) => (APART[0] * to, APART[1] * to),
+            None => (self.size.h, self.size.shortest(length)),
+        };
         let mut h = first;
         loop {
             match self.set_off(h, departure) {
@@ -136,7 +157,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
                 }
                 Err(refusal) => {
                     self.core.statistics.rejected += 1;
-                    h *= 0.5;
+                    h *= if departure.state.is_some() { 0.9 } else { 0.5 };
                     if h < shortest {
                         let detail = format!(
                             "no step onto the branch from {:.1e} down to {:.1e} was accepted: \
@@ -157,10 +178,17 @@ impl<'a, P: Problem> Tracer<'a, P> {
             trial.u[i] = current.u[i] + h * current.tu[i];
         }
         trial.p = current.p + h * current.tp + departure.bend * h * h;
+        if let Some((to, beyond)) = &departure.state {
+            let square = (h / to).powi(2);
+            trial.u.iter_mut().zip(beyond).for_each(|(u, d)| *u += square * d);
+        }
         let corrected = core.correct(Constraint::Plane(current, h), trial, Precision::Step)?;
         let secant = core.secant(current, trial);
         let tangents = core.weights.dot(&current.mtu, current.tp, &trial.tu, trial.tp);
-        let quality = judge(settings, trial, h, &corrected, secant, tangents)?;
+        // a state that is known may lie round the corner
+        let turn = if departure.state.is_some() { FAR_TURN } else { 0.0 };
+        let limits = Settings { max_angle: settings.max_angle.max(turn), ..settings.clone() };
+        let quality = judge(&limits, trial, h, &corrected, secant, tangents)?;
         // along the new branch, not along the old one
         let old = &departure.old;
         let mut d = Extended { u: trial.u.clone(), p: trial.p };
