@@ -27,7 +27,7 @@ pub mod tracer;
 
 pub use branch::{
     Branch, Criticality, Crossing, Detail, Direction, Doubt, Eigenvector, Event, EventKind,
-    FoldForm, HopfForm, Point, RestartPoint, Shape, Statistics, Stop, StopReason,
+    FoldForm, HopfForm, Offset, Point, RestartPoint, Shape, Statistics, Stop, StopReason,
 };
 pub use derivative_check::{DerivativeCheck, check_derivatives};
 #[cfg(feature = "dual")]

@@ -107,3 +107,58 @@ fn near_but_not_the_same() {
         }
     }
 }
+
+/// `ż = (p − |z|²) z + c z̄^{n−1}`, beside an unknown that follows, in turned coordinates: `n` lines of
+/// branches, at the angles `π k/n`.
+#[test]
+fn two_modes_with_the_symmetry_of_a_polygon() {
+    for corners in 5..=9_i32 {
+        for (c, turn) in [(0.3, 0.4), (-0.4, 1.1), (0.05, 0.0)] {
+            let (sin, cos) = f64::sin_cos(turn);
+            let problem = DenseProblem::from_residual(3, &["p"], move |u, p, r| {
+                let (x, y) = (cos * u[0] + sin * u[1], cos * u[1] - sin * u[0]);
+                let square = x * x + y * y;
+                // z̄^{n−1}
+                let (mut re, mut im) = (1.0, 0.0);
+                for _ in 1..corners {
+                    (re, im) = (re * x + im * y, im * x - re * y);
+                }
+                let f = (p[0] - square) * x + c * re + 0.3 * u[2] * x;
+                let g = (p[0] - square) * y + c * im + 0.3 * u[2] * y;
+                (r[0], r[1]) = (cos * f - sin * g, sin * f + cos * g);
+                r[2] = 0.5 * square - u[2];
+            });
+            let branch = trunk(&problem, 3);
+            let case = format!("{corners} corners, {c}");
+            assert_eq!(branch.events.len(), 1, "{case}: {:?}", branch.events);
+            let crossing = branch.events[0].crossing().unwrap();
+            assert_eq!(crossing.shape, Shape::Multiple, "{case}");
+            assert_eq!(crossing.leaving.len(), corners as usize, "{case}");
+            let settings = Settings { target: Some(0.3), ..Settings::default() };
+            let ends = ends(&problem, &branch, &settings);
+            let mut angles: Vec<f64> = Vec::new();
+            for (p, u) in &ends {
+                assert_eq!(*p, 0.3);
+                let angle = u[1].atan2(u[0]) - turn;
+                let steps = angle * f64::from(corners) / std::f64::consts::PI;
+                assert!((steps - steps.round()).abs() < 1e-6, "{case}: {angle}");
+                angles.push(steps.round().rem_euclid(2.0 * f64::from(corners)));
+            }
+            angles.sort_by(f64::total_cmp);
+            let all: Vec<f64> = (0..2 * corners).map(f64::from).collect();
+            assert_eq!(angles, all, "{case}");
+        }
+    }
+}
+
+/// A circle of branches: one stands for all. A polygon too weak to be seen beside rounding is none.
+#[test]
+fn a_circle_of_branches_is_not_a_polygon() {
+    let problem = DenseProblem::from_residual(2, &["p"], |u, p, r| {
+        let square = u[0] * u[0] + u[1] * u[1];
+        (r[0], r[1]) = ((p[0] - square) * u[0], (p[0] - square) * u[1]);
+    });
+    let branch = trunk(&problem, 2);
+    let crossing = branch.events[0].crossing().unwrap();
+    assert_eq!((crossing.shape, crossing.leaving.len()), (Shape::Multiple, 1));
+}

@@ -158,7 +158,7 @@ pub enum Detail {
     Hopf(HopfForm),
 }
 
-/// A fold: `p - p₀ = ½ p″ s² + …`.
+/// A fold: `p - p₀ = ½ p″ s² + …`, or `c s⁴ + …` and so on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FoldForm {
     /// `d²p/ds²` in the problem's metric; positive where the parameter has a minimum.
@@ -166,6 +166,10 @@ pub struct FoldForm {
     /// Estimated error of it: as large as the values found where differences do not converge.
     #[serde(default)]
     pub curvature_error: f64,
+    /// The power of `s` with which the parameter turns: 2, or for a flat fold, whose curvature is 0, an
+    /// even number above. `None` where it is not known.
+    #[serde(default)]
+    pub order: Option<usize>,
 }
 
 /// How branches cross.
@@ -266,6 +270,19 @@ pub struct Direction {
     pub bend: f64,
     /// Multiple of the direction at which the nonlinearity matters over the parameter's range.
     pub amplitude: f64,
+    /// A state of the branch, where nearer ones do not tell it from its neighbours: at a double
+    /// branch point with the symmetry of a polygon.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset: Option<Offset>,
+}
+
+/// A state of a branch that leaves a branch point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Offset {
+    /// The multiple of the direction.
+    pub multiple: f64,
+    /// The unknowns there, less those of the branch point.
+    pub du: Vec<f64>,
 }
 
 /// A Hopf point: periodic solutions are born.

@@ -6,7 +6,7 @@ mod event;
 pub use access::RestartPoint;
 pub use event::{
     Criticality, Crossing, Detail, Direction, Eigenvector, Event, EventKind, FoldForm, HopfForm,
-    Shape,
+    Offset, Shape,
 };
 
 use serde::{Deserialize, Serialize};

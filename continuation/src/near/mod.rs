@@ -303,7 +303,7 @@ fn imperfect<P: Problem>(
     let length = probe.length(&v);
     v.scale(1.0 / length);
     let amplitude = found.amplitude[1] * length;
-    let direction = Direction { du: v.u, dp: v.p, bend: 0.0, amplitude };
+    let direction = Direction { du: v.u, dp: v.p, bend: 0.0, amplitude, offset: None };
     let near = NearBifurcation {
         kind: NearKind::BranchPoint,
         point: 0,
@@ -345,7 +345,7 @@ fn folds<P: Problem>(
             from(*i).total_cmp(&from(*j))
         });
         let point = nearest.unwrap_or(a);
-        let direction = Direction { du: v.u, dp: v.p, bend: 0.0, amplitude: length };
+        let direction = Direction { du: v.u, dp: v.p, bend: 0.0, amplitude: length, offset: None };
         found.push(NearBifurcation {
             kind: NearKind::Folds,
             point,

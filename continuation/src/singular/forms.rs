@@ -119,7 +119,7 @@ pub(super) fn direction<P: Problem>(
     if v.p.abs() < VERTICAL * probe.weights.parameter * (1.0 / length) {
         v.p = 0.0; // rounding
     }
-    Direction { du: v.u, dp: v.p, bend, amplitude }
+    Direction { du: v.u, dp: v.p, bend, amplitude, offset: None }
 }
 
 fn unit(y: [f64; 2]) -> [f64; 2] {

@@ -5,6 +5,7 @@
 //! here turns the bracket into a point, or refuses: a change that no singular point on the branch
 //! explains was a jump, and the step must be shorter.
 
+mod circle;
 mod defect;
 mod deficient;
 mod fold;

@@ -6,12 +6,13 @@
 //! solutions are branches (Küpper, Mittelmann and Weber, *Numerical Methods for Bifurcation
 //! Problems*, Birkhäuser, 1984).
 
+use super::circle::{Reduced, Separated};
 use super::forms::{Analysed, VERTICAL, direction};
 use super::kernel::Singular;
 use super::probe::{Extended, Probe};
 use super::roots::{Forms, solutions};
 use super::small::least_squares;
-use crate::branch::{Crossing, Shape};
+use crate::branch::{Crossing, Direction, Offset, Shape};
 use crate::problem::{EvalError, Problem};
 use crate::step::dot;
 
@@ -91,15 +92,8 @@ pub(super) fn analyse<P: Problem>(
         }
     } else {
         let (cubic, bends) = cubic_terms(probe, at, &vectors)?;
-        let fallback = || {
-            let mut first = vec![0.0; k];
-            first[0] = 1.0;
-            let lambda = -cubic.coefficients[0][0] / a.coefficients[0][0];
-            vec![(first, lambda)]
-        };
-        // a circle of branches, by a continuous symmetry: one stands for all
-        for (xi, lambda) in solutions(&cubic, &a).unwrap_or_else(fallback) {
-            let v = combine(&xi);
+        let mut fork = |xi: &[f64], lambda: f64| {
+            let v = combine(xi);
             let mut curvature = lambda / 3.0 * traced.p;
             for (i, row) in bends.iter().enumerate() {
                 for (l, h) in row.iter().enumerate() {
@@ -111,11 +105,55 @@ pub(super) fn analyse<P: Problem>(
             let reach = if over_range > 0.0 { over_range.sqrt().recip() } else { 1.0 };
             let bend = 0.5 * curvature / (length * length);
             let amplitude = length * reach.clamp(1e-3, 1e3);
-            crossing.leaving.push(direction(probe, v, bend, amplitude));
+            direction(probe, v, bend, amplitude)
+        };
+        let first = || {
+            let mut xi = vec![0.0; k];
+            xi[0] = 1.0;
+            (xi, -cubic.coefficients[0][0] / a.coefficients[0][0])
+        };
+        match solutions(&cubic, &a) {
+            Some(all) => crossing.leaving.extend(all.iter().map(|(xi, l)| fork(xi, *l))),
+            None => {
+                let (xi, lambda) = first();
+                let any = fork(&xi, lambda);
+                match beyond_cubic(probe, at, (&traced, &vectors, &a), from_side) {
+                    // one stands for all
+                    Separated::Circle => crossing.leaving.push(any),
+                    Separated::Branches(rays) => {
+                        for ray in rays {
+                            let (sin, cos) = ray.angle.sin_cos();
+                            let v = combine(&[cos, sin]);
+                            let length = probe.length(&v);
+                            let reached = ray.amplitude * length;
+                            let bend = ray.offset.p / (reached * reached);
+                            let separate = direction(probe, v, bend, any.amplitude);
+                            let offset = Some(Offset { multiple: reached, du: ray.offset.u });
+                            crossing.leaving.push(Direction { offset, ..separate });
+                        }
+                    }
+                    Separated::Unknown => crossing.shape = Shape::Degenerate,
+                }
+            }
         }
     }
     let alignment = (dot(&wanted, &own).abs(), 0.0);
     Ok(Some(Analysed { crossing, traced, alignment }))
+}
+
+/// What tells directions apart that solve the cubic equations all alike: `vectors` across the traced
+/// tangent, with the linear forms `a` there.
+fn beyond_cubic<P: Problem>(
+    probe: &mut Probe<'_, P>,
+    at: &mut Singular,
+    (traced, vectors, a): (&Extended, &[Extended], &Forms),
+    from_side: bool,
+) -> Separated {
+    if from_side {
+        return Separated::Unknown;
+    }
+    let Singular { frame, z, .. } = at;
+    Reduced { probe, frame, z, along: traced, across: vectors, linear: a }.separate()
 }
 
 /// Symmetric cubic coefficients of the reduced equations on `vectors`, and the parameter's part of

@@ -23,7 +23,7 @@ impl Forms {
     }
 
     /// The forms at `x`, and their derivatives by rows.
-    fn at(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    pub(super) fn at(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
         let (k, degree) = (self.k, self.degree);
         let mut values = Vec::with_capacity(k);
         let mut slopes = Vec::with_capacity(k);

@@ -6,7 +6,7 @@ use continuation::{EvalError, ParamId, Parameter, Problem, Stability};
 /// A coefficient, and the exponents of the unknowns and of the parameter.
 type Term = (f64, Vec<i32>);
 
-pub struct Polynomial {
+pub(crate) struct Polynomial {
     equations: Vec<Vec<Term>>,
 }
 
@@ -19,7 +19,7 @@ struct File {
 
 impl Polynomial {
     /// The problem, with the unknowns and the parameter at a solution.
-    pub fn read(text: &str) -> (Self, Vec<f64>, f64) {
+    pub(crate) fn read(text: &str) -> (Self, Vec<f64>, f64) {
         let File { start, p, equations } = serde_json::from_str(text).unwrap();
         (Polynomial { equations }, start, p)
     }
