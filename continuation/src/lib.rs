@@ -38,7 +38,9 @@ pub use modes::{Modes, modes};
 pub use near::{NearBifurcation, NearError, NearKind, NearSettings, near_bifurcations};
 pub use newton::{NewtonError, NewtonReport, NewtonSettings, newton};
 pub use problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints, Stability};
-pub use residual_problem::{BandProblem, DenseProblem, ResidualProblem, SparseProblem};
+pub use residual_problem::{
+    BandProblem, BoxedResidual, DenseProblem, ResidualProblem, SparseProblem,
+};
 pub use settings::{Counting, Settings, SettingsError};
 pub use sound::ProblemError;
 pub use step::Refusal;

@@ -77,6 +77,9 @@ pub type BandProblem<F> = ResidualProblem<Band, F>;
 /// A [`ResidualProblem`] with a sparse Jacobian: networks, differential equations in two dimensions.
 pub type SparseProblem<F> = ResidualProblem<Sparse, F>;
 
+/// A residual `f(u, p, r)` behind a pointer ([`ResidualProblem::boxed`]).
+pub type BoxedResidual = Box<dyn Fn(&[f64], &[f64], &mut [f64])>;
+
 /// A scalar function of unknowns and parameters.
 type Observable = dyn Fn(&[f64], &[f64]) -> f64;
 
@@ -244,6 +247,36 @@ impl<J, F: Fn(&[f64], &[f64], &mut [f64])> ResidualProblem<J, F> {
         self.names.push(name);
         self.observables.push(Box::new(value));
         self
+    }
+
+    /// The same with a residual behind a pointer: a type that has a name and is the same for all
+    /// residuals, so that the engine is compiled once for all of them.
+    ///
+    /// ```
+    /// use continuation::{BoxedResidual, DenseProblem};
+    ///
+    /// let line = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0] - p[0]);
+    /// let fold = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0] - u[0] * u[0]);
+    /// let both: [DenseProblem<BoxedResidual>; 2] = [line.boxed(), fold.boxed()];
+    /// ```
+    #[must_use]
+    pub fn boxed(self) -> ResidualProblem<J, BoxedResidual>
+    where
+        F: 'static,
+    {
+        let ResidualProblem {
+            n,
+            parameters,
+            stability,
+            f,
+            empty,
+            colours,
+            names,
+            observables,
+            scratch,
+        } = self;
+        let f: BoxedResidual = Box::new(f);
+        ResidualProblem { n, parameters, stability, f, empty, colours, names, observables, scratch }
     }
 
     /// A typical magnitude of a parameter ([`Parameter::scale`]), by default 1; without effect if there

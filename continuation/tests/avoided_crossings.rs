@@ -42,7 +42,8 @@ fn imperfect_pitchforks_are_followed_or_the_trace_stops() {
             let (x, y) = (cos * u[0] + sin * u[1], cos * u[1] - sin * u[0]);
             r[0] = (p[0] - place) * x - x.powi(3) + gap;
             r[1] = y - 0.3 * p[0] - x * x;
-        });
+        })
+        .boxed();
         let start = |x: f64, p: f64| {
             let y = 0.3 * p + x * x;
             [cos * x - sin * y, sin * x + cos * y]
@@ -117,7 +118,8 @@ fn no_step_cuts_the_corner_of_an_acute_crossing() {
             let (f, g) = ((x - own(p[0])) * (x - other(p[0])), y - 0.5 * x);
             r[0] = cos * f - sin * g;
             r[1] = sin * f + cos * g;
-        });
+        })
+        .boxed();
         let at = |x: f64| [cos * x - sin * 0.5 * x, sin * x + cos * 0.5 * x];
         let max_step = Some(10f64.powf(random.between(-2.0, -0.3)));
         let settings = Settings { target: Some(1.0), max_step, ..Settings::default() };

@@ -73,7 +73,7 @@ fn the_cusp_from_its_middle_sheet() {
 }
 
 fn circle() -> impl Problem {
-    DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0] * u[0] + p[0] * p[0] - 1.0)
+    DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0] * u[0] + p[0] * p[0] - 1.0).boxed()
 }
 
 #[test]
@@ -117,7 +117,8 @@ fn branch_points_on_both_sides_can_be_left() {
     // x (x² + p² − 1): pitchforks at p = ±1 on x = 0, joined by a circle
     let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| {
         r[0] = u[0] * (1.0 - p[0] * p[0] - u[0] * u[0]);
-    });
+    })
+    .boxed();
     let settings = Settings { domain: Some((-2.0, 2.5)), ..Settings::default() };
     let branch = trace(&problem, "p", &[0.0], &[0.1], settings.clone());
     consistent(&branch);

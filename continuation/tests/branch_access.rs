@@ -4,8 +4,8 @@
 
 use continuation::samples::Cusp;
 use continuation::{
-    Branch, DenseProblem, Eigenvector, Event, EventKind, Settings, StopReason, TraceError, Tracer,
-    Watch,
+    BoxedResidual, Branch, DenseProblem, Eigenvector, Event, EventKind, Settings, StopReason,
+    TraceError, Tracer, Watch,
 };
 use std::io::ErrorKind;
 
@@ -30,6 +30,7 @@ fn columns_are_found_by_name() {
     }
     // names of the problem come first
     let named = DenseProblem::from_residual(1, &["s"], |u, p, r| r[0] = p[0] - u[0])
+        .boxed()
         .observing("unstable", |u, _| 10.0 * u[0]);
     let settings = Settings { target: Some(1.0), ..Settings::default() };
     let branch = Tracer::new(&named, "s", &[0.0], &[0.0], settings).unwrap().run_quietly();
@@ -66,6 +67,7 @@ fn csv_is_read_back_exactly() {
     assert!(error.to_string().contains("nu"));
     // words that hold what separates are quoted
     let odd = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0] - u[0])
+        .boxed()
         .observing("a, \"b\"", |u, _| u[0]);
     let settings = Settings { target: Some(1.0), ..Settings::default() };
     let branch = Tracer::new(&odd, "p", &[0.0], &[0.0], settings).unwrap().run_quietly();
@@ -104,7 +106,7 @@ fn a_trace_goes_on_from_every_point() {
     let settings = Settings::default;
     let beyond = Tracer::from_point(&Cusp, &saved, saved.points.len(), settings());
     assert!(matches!(beyond, Err(TraceError::Foreign { .. })));
-    let other = DenseProblem::from_residual(1, &["q"], |u, p, r| r[0] = p[0] - u[0]);
+    let other = DenseProblem::from_residual(1, &["q"], |u, p, r| r[0] = p[0] - u[0]).boxed();
     let foreign = Tracer::from_point(&other, &saved, 0, settings());
     assert!(matches!(foreign, Err(TraceError::Foreign { .. })));
 }
@@ -114,14 +116,13 @@ const TURN: f64 = 0.7;
 
 /// `g(x, y, p)` in turned unknowns.
 #[allow(clippy::type_complexity, reason = "a residual has this type")]
-fn turned(
-    g: impl Fn(f64, f64, f64) -> (f64, f64),
-) -> DenseProblem<impl Fn(&[f64], &[f64], &mut [f64])> {
+fn turned(g: impl Fn(f64, f64, f64) -> (f64, f64) + 'static) -> DenseProblem<BoxedResidual> {
     let (c, s) = (TURN.cos(), TURN.sin());
     DenseProblem::from_residual(2, &["p"], move |u, p, r| {
         let (a, b) = g(c * u[0] + s * u[1], -s * u[0] + c * u[1], p[0]);
         (r[0], r[1]) = (c * a - s * b, s * a + c * b);
     })
+    .boxed()
 }
 
 fn is_along(vector: &Eigenvector, (x, y): (f64, f64), tolerance: f64) {

@@ -142,7 +142,8 @@ fn nine_solutions_of_two_coupled_cubics() {
     let problem = DenseProblem::from_residual(2, &["e"], |u, p, r| {
         r[0] = u[0] - u[0].powi(3) + p[0] * u[1];
         r[1] = u[1] - u[1].powi(3) + p[0] * u[0];
-    });
+    })
+    .boxed();
     let known = [vec![0.0, 0.0]];
     let found = search(&problem, &[0.1], &known);
     assert_eq!(found.solutions.len(), 8, "{:?}", found.report);
@@ -193,7 +194,8 @@ fn bratu_in_any_unit() {
 /// outside of the domain.
 #[test]
 fn steps_out_of_the_domain_are_shortened() {
-    let problem = DenseProblem::from_residual(1, &["p"], |x, p, r| r[0] = x[0].ln().powi(2) - p[0]);
+    let problem =
+        DenseProblem::from_residual(1, &["p"], |x, p, r| r[0] = x[0].ln().powi(2) - p[0]).boxed();
     let known = [vec![1.0_f64.exp()]];
     let found = search(&problem, &[1.0], &known);
     assert_eq!(found.solutions.len(), 1, "{:?}", found.report);

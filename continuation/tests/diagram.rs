@@ -53,7 +53,7 @@ fn nothing_twice(diagram: &Diagram) {
 #[test]
 fn no_special_points() {
     let problem =
-        DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0] - u[0] - u[0].powi(3));
+        DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0] - u[0] - u[0].powi(3)).boxed();
     let diagram = explore(&problem, &[0.0], &[0.0], within(-1.0, 2.0));
     assert_eq!((diagram.branches.len(), diagram.joints.len()), (1, 0));
     assert!(diagram.is_complete());
@@ -67,7 +67,8 @@ fn isola_with_a_branch_across() {
     let problem = DenseProblem::from_residual(2, &["p"], |u, p, r| {
         r[0] = u[0] * u[0] + p[0] * p[0] - 1.0;
         r[1] = u[1] * (u[0] - 0.5 - u[1] * u[1]);
-    });
+    })
+    .boxed();
     let diagram = explore(&problem, &[1.0, 0.0], &[0.0], within(-2.0, 2.0));
     assert!(
         diagram.is_complete(),
@@ -88,7 +89,8 @@ fn hundreds_of_special_points() {
     let n = 300.0 * std::f64::consts::PI;
     let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| {
         r[0] = u[0] * (p[0].sin() - u[0]);
-    });
+    })
+    .boxed();
     let trace = Settings {
         target: Some(n - 1.0),
         domain: Some((-1.0, n - 1.0)),
@@ -117,7 +119,8 @@ fn branches_that_an_imperfection_keeps_apart() {
     for imperfection in [1e-2, 1e-3, 1e-5] {
         let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| {
             r[0] = p[0] * u[0] - u[0].powi(3) + imperfection;
-        });
+        })
+        .boxed();
         let diagram = explore(&problem, &[0.0], &[-1.0], within(-1.0, 1.0));
         assert!(diagram.is_complete());
         assert_eq!(diagram.branches.len(), 2, "{imperfection}");
@@ -151,7 +154,8 @@ fn limits_and_interruptions_keep_what_is_there() {
     let problem = DenseProblem::from_residual(2, &["p"], |u, p, r| {
         r[0] = p[0] * u[0] - u[0].powi(3);
         r[1] = (p[0] - 0.5) * u[1] - u[1].powi(3);
-    });
+    })
+    .boxed();
     let settings = DiagramSettings { max_branches: 2, ..within(-1.0, 1.0) };
     let diagram = explore(&problem, &[0.0; 2], &[-1.0], settings);
     assert_eq!((diagram.branches.len(), diagram.stopped), (2, DiagramStop::MaxBranches));
@@ -292,6 +296,7 @@ fn branches_of_another_diagram_are_refused() {
         DenseProblem::from_residual(1, &["p"], move |u, p, r| {
             r[0] = (p[0] - c) * u[0] - u[0].powi(3)
         })
+        .boxed()
     };
     let (one, other) = (problem(0.0), problem(5.0));
     let diagram = explore(&one, &[0.0], &[-1.0], within(-1.0, 1.0));
@@ -303,7 +308,8 @@ fn branches_of_another_diagram_are_refused() {
     let wide = DenseProblem::from_residual(2, &["p"], |u, p, r| {
         r[0] = p[0] - u[0];
         r[1] = u[1];
-    });
+    })
+    .boxed();
     let explorer =
         Explorer::new(&wide, "p", &[-1.0, 0.0], &[-1.0], within(-1.0, 1.0), &[]).unwrap();
     let error = explorer.resume(diagram.branches, None).err().unwrap();
@@ -317,7 +323,8 @@ fn branches_of_another_diagram_are_refused() {
 fn branch_points_of_unknown_branches_leave_a_diagram_incomplete() {
     let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| {
         r[0] = u[0] * (p[0].powi(3) - u[0] * u[0]);
-    });
+    })
+    .boxed();
     let diagram = explore(&problem, &[0.0], &[-1.0], within(-1.0, 1.0));
     let branch = &diagram.branches[0].branch;
     let events: Vec<_> = branch.events_of(&EventKind::BranchPoint).collect();

@@ -45,7 +45,8 @@ fn claimed(problem: &impl Problem, u: &[f64], p: &[f64]) -> f64 {
 fn another_scale_after_the_first() {
     let problem = DenseProblem::from_residual(1, &["k"], |u, p, r| {
         r[0] = p[0] / (1.0 + (u[0] / p[0]).powi(3));
-    });
+    })
+    .boxed();
     for k in [1.0, 1e-3, 1e3, 1e-6, 1.0] {
         assert!((entry(&problem, &[k], &[k]) + 0.75).abs() < 1e-11, "{k:e}");
     }
@@ -55,7 +56,8 @@ fn another_scale_after_the_first() {
 fn a_peak_after_a_flat_place() {
     let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| {
         r[0] = p[0] - u[0] - 50.0 * (-(u[0] - 5.0).powi(2)).exp();
-    });
+    })
+    .boxed();
     for x in [30.0, 6.0, 5.5, 30.0, 5.5] {
         let d: f64 = x - 5.0;
         let exact = -1.0 + 100.0 * d * (-d * d).exp();
@@ -66,7 +68,8 @@ fn a_peak_after_a_flat_place() {
     for width in [1e-2, 1e-3, 1e-4, 1e-5] {
         let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| {
             r[0] = p[0] - u[0] - 50.0 * (-((u[0] - 5.0) / width).powi(2)).exp();
-        });
+        })
+        .boxed();
         let x = 5.0 + 0.6 * width;
         let d: f64 = (x - 5.0) / width;
         let exact = -1.0 + 100.0 * d / width * (-d * d).exp();
@@ -105,13 +108,13 @@ fn a_used_problem_answers_as_a_new_one_and_within_its_claim() {
             r[0] = family(kind, a, s, c, u[0]).0 - p[0];
             r[1] = u[1] * (1.0 + u[0] / s) - p[0] / s;
         };
-        let used = DenseProblem::from_residual(2, &["p"], f);
+        let used = DenseProblem::from_residual(2, &["p"], f).boxed();
         for _ in 0..8 {
             let x = s * random.between(0.1, 4.0);
             let u = [x, random.scale()];
             let (value, exact) = family(kind, a, s, c, x);
             let p = [value * random.between(0.5, 2.0)];
-            let new = DenseProblem::from_residual(2, &["p"], f);
+            let new = DenseProblem::from_residual(2, &["p"], f).boxed();
             let (one, two) = (entry(&used, &u, &p), entry(&new, &u, &p));
             assert_eq!(one.to_bits(), two.to_bits(), "{kind} {x:e}");
             let (error, bound) = ((one - exact).abs(), claimed(&used, &u, &p));
@@ -127,7 +130,8 @@ fn a_used_problem_answers_as_a_new_one_and_within_its_claim() {
 #[test]
 fn at_the_edge_of_a_domain_differences_are_one_sided() {
     let problem =
-        DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0] - u[0] - u[0].powf(2.5));
+        DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0] - u[0] - u[0].powf(2.5))
+            .boxed();
     for x in [0.0, 1e-14, 1e-9, 1e-3, 1.0] {
         let exact = -1.0 - 2.5 * f64::powf(x, 1.5);
         let found = entry(&problem, &[x], &[0.5]);
@@ -153,7 +157,8 @@ fn a_ring_of_repressors_over_six_decades() {
         for i in 0..3 {
             r[i] = p[0] * k / (k + u[(i + 2) % 3].powi(3)) - 0.1 * u[i];
         }
-    });
+    })
+    .boxed();
     for turn in 0..2 {
         for k in [20.0, 1e-3, 1e3, 0.057] {
             let at = 0.3 * cube * k;
@@ -177,7 +182,8 @@ fn an_estimate_contains_the_errors_of_differences() {
     for e in [1.0, 1e-1, 1e-2, 1e-3, 1e-4] {
         let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| {
             r[0] = p[0] + f64::hypot(u[0] - 0.3, e);
-        });
+        })
+        .boxed();
         let settings =
             Settings { domain: Some((-1.0, 1.0)), max_points: 2000, ..Settings::default() };
         let start = -f64::hypot(0.5, e);
@@ -216,8 +222,8 @@ fn columns_of_one_colour_together() {
         .flat_map(|i| [i.wrapping_sub(2), i, i ^ 1, i + 2].map(|j| (i, j)))
         .filter(|(_, j)| *j < 2 * n)
         .collect();
-    let dense = DenseProblem::from_residual(2 * n, &["B"], reactions(n));
-    let band = BandProblem::from_residual(2 * n, (2, 2), &["B"], reactions(n));
+    let dense = DenseProblem::from_residual(2 * n, &["B"], reactions(n)).boxed();
+    let band = BandProblem::from_residual(2 * n, (2, 2), &["B"], reactions(n)).boxed();
     let sparse = SparseProblem::from_residual(2 * n, &pattern, &["B"], reactions(n)).unwrap();
     let mut random = Random(3);
     let x: Vec<f64> = (0..2 * n).map(|_| random.between(0.1, 3.0)).collect();

@@ -54,7 +54,8 @@ fn the_other_branch_of_an_imperfect_pitchfork_in_any_unit() {
         for (a, b, c) in SCALES.into_iter().chain([(1.0, 1.0, 1.0)]) {
             let inner = DenseProblem::from_residual(1, &["p"], move |x, p, r| {
                 r[0] = p[0] * x[0] - x[0].powi(3) + e;
-            });
+            })
+            .boxed();
             let problem = Scaled::new(inner, a, b, &[c]);
             let branches = explore(&problem, &[0.0], &[-c], &within(-c, c), &[]);
             assert_eq!(branches.len(), 2, "{e:e} {a:e} {b:e} {c:e}");
@@ -73,7 +74,8 @@ fn the_other_branch_of_an_imperfect_transcritical_point() {
     for e in [1e-4, -1e-4, 1e-2, -1e-2, 0.1, -0.1] {
         let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| {
             r[0] = (u[0] - p[0]) * (u[0] - 2.0) - e;
-        });
+        })
+        .boxed();
         let branches = explore(&problem, &[0.0], &[0.0], &within(0.0, 4.0), &[]);
         assert_eq!(branches.len(), 2, "{e:e}");
         let expected = if e > 0.0 { 0 } else { 1 };
@@ -89,7 +91,8 @@ fn the_other_branch_of_a_broken_symmetry() {
             let rate = |s: f64| 100.0 * s / (1.0 + s + s * s);
             r[0] = p[0] + e - 2.0 * u[0] + u[1] - rate(u[0]);
             r[1] = p[0] - 2.0 * u[1] + u[0] - rate(u[1]);
-        });
+        })
+        .boxed();
         let branches = explore(&problem, &[0.0, 0.0], &[0.0], &within(0.0, 40.0), &[]);
         assert_eq!(branches.len(), 2, "{e:e}");
         // the middle part of the symmetric branch with the other asymmetric one: a closed loop

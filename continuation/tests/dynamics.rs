@@ -31,7 +31,8 @@ fn ab() {
         let rate = p[0] * (1.0 - u[0]) * u[1].exp();
         r[0] = -u[0] + rate;
         r[1] = -u[1] + 18.0 * rate - 3.0 * u[1];
-    });
+    })
+    .boxed();
     let expected = [
         (EventKind::Hopf, 0.111_153_484_190),
         (EventKind::Fold, 0.111_565_080_074),
@@ -52,7 +53,8 @@ fn abc() {
         r[0] = -u + (1.0 - u) * e;
         r[1] = -v + e * (1.0 - u - 0.04 * v);
         r[2] = -2.55 * w + 8.0 * e * (1.0 - u + 0.04 * v);
-    });
+    })
+    .boxed();
     let settings = Settings { target: Some(0.4), ..Settings::default() };
     let branch = trace(&problem, &[0.0; 3], 0.0, settings);
     let hopf: Vec<f64> = branch.events_of(&EventKind::Hopf).map(|e| e.p).collect();
@@ -70,7 +72,8 @@ fn plp() {
         let rate = s * a / (1.0 + s + 0.1 * s * s);
         r[0] = 110.0 - s - p[0] * rate;
         r[1] = 0.2 * (500.0 - a) - p[0] * rate;
-    });
+    })
+    .boxed();
     let settings = Settings { target: Some(10.0), ..Settings::default() };
     let branch = trace(&problem, &[110.0, 500.0], 0.0, settings);
     let hopf: Vec<f64> = branch.events_of(&EventKind::Hopf).map(|e| e.p).collect();
@@ -88,7 +91,8 @@ fn lyapunov_coefficient_of_the_normal_form() {
             let square = u[0] * u[0] + u[1] * u[1];
             r[0] = p[0] * u[0] - u[1] + sigma * u[0] * square;
             r[1] = u[0] + p[0] * u[1] + sigma * u[1] * square;
-        });
+        })
+        .boxed();
         let settings = Settings { target: Some(1.0), ..Settings::default() };
         let branch = trace(&problem, &[0.0, 0.0], -1.0, settings);
         assert_eq!(branch.events.len(), 1);
@@ -112,7 +116,8 @@ fn lyapunov_coefficient_gives_the_amplitude_of_the_oscillation() {
     };
     let problem = DenseProblem::from_residual(2, &["p"], move |u, p, r| {
         r.copy_from_slice(&f([u[0], u[1]], p[0]));
-    });
+    })
+    .boxed();
     let step = -1e-4;
     let settings = Settings { target: Some(0.25), ..Settings::default() };
     let branch = trace(&problem, &[0.0, 0.0], 0.0, settings);

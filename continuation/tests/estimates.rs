@@ -61,6 +61,7 @@ fn folds_and_zeros_of_random_polynomials() {
         let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| {
             r[0] = p[0] - horner(&inner, u[0] / unit);
         })
+        .boxed()
         .observing("u", |u, _| u[0]);
         let start = -2.0;
         let branch = trace(&problem, &[start * unit], horner(&c, start));
@@ -110,6 +111,7 @@ fn branch_points_of_random_polynomials() {
         let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| {
             r[0] = u[0] / unit * (p[0] - horner(&inner, u[0] / unit));
         })
+        .boxed()
         .observing("u", |u, _| u[0]);
         let branch = trace(&problem, &[0.0], -4.0);
         let events: Vec<_> = branch.events_of(&EventKind::BranchPoint).collect();

@@ -39,7 +39,8 @@ fn flat(order: i32, random: &mut Random, step: f64) -> (f64, Branch) {
         let g = k * s + 0.3 * s * s - t;
         (r[0], r[1]) = (cos * f - sin * g, sin * f + cos * g);
         r[2] = l * q[0] + s.sin() - v[2];
-    });
+    })
+    .boxed();
     let s = place - 0.8;
     let t = k * s + 0.3 * s * s;
     let start =

@@ -82,6 +82,7 @@ fn folds_and_pitchforks() {
             r[0] = p[0] - 2.0 * s[0] + s[1] - rate(s[0]);
             r[1] = p[0] - 2.0 * s[1] + s[0] - rate(s[1]);
         })
+        .boxed()
     };
     compare(enz, &[0.0, 0.0], 0.0, 40.0, true);
 }
@@ -94,6 +95,7 @@ fn hopf_points() {
             r[0] = -u[0] + rate;
             r[1] = -u[1] + 18.0 * rate - 3.0 * u[1];
         })
+        .boxed()
     };
     compare(ab, &[0.0, 0.0], 0.0, 0.25, false);
 }

@@ -104,19 +104,20 @@ fn sizes() {
         let found = newton(&good, &mut u, p, &Default::default());
         assert!(matches!(found, Err(NewtonError::Problem(ProblemError::Length { .. }))));
     }
-    let nothing = DenseProblem::from_residual(0, &["p"], |_, _, _| {});
+    let nothing = DenseProblem::from_residual(0, &["p"], |_, _, _| {}).boxed();
     assert_eq!(error(&nothing, &[], &[1.0]), TraceError::Problem(ProblemError::NoUnknowns));
 }
 
 #[test]
 fn entries_that_are_never_set() {
     let unwritten = |what, at| TraceError::Problem(ProblemError::Unwritten { what, at });
-    let skips = DenseProblem::from_residual(2, &["p"], |u, p, r| r[0] = p[0] - u[0] - u[1]);
+    let skips = DenseProblem::from_residual(2, &["p"], |u, p, r| r[0] = p[0] - u[0] - u[1]).boxed();
     assert_eq!(error(&skips, &[0.0, 0.0], &[0.0]), unwritten("the residual", 1));
     let adds = DenseProblem::from_residual(2, &["p"], |u, p, r| {
         r[0] += p[0] - u[0];
         r[1] = p[0] - u[1];
-    });
+    })
+    .boxed();
     assert_eq!(error(&adds, &[0.0, 0.0], &[0.0]), unwritten("the residual", 0));
     let slope = Simple { adds_slope: true, ..Simple::new(2, Dense::new, diagonal) };
     assert_eq!(error(&slope, &[0.0; 2], &[0.0]), unwritten("the derivative by the parameter", 0));
@@ -128,15 +129,17 @@ fn entries_that_are_never_set() {
 
 #[test]
 fn nothing_to_solve() {
-    let zero = DenseProblem::from_residual(2, &["p"], |_, _, r| r.fill(0.0));
+    let zero = DenseProblem::from_residual(2, &["p"], |_, _, r| r.fill(0.0)).boxed();
     assert_eq!(error(&zero, &[1.0, 2.0], &[1.0]), TraceError::Problem(ProblemError::NoEquation));
     // zero with both derivatives at the start, and not elsewhere
-    let flat = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0].powi(3) - p[0].powi(3));
+    let flat = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0].powi(3) - p[0].powi(3))
+        .boxed();
     let settings = Settings { target: Some(2.0), ..Settings::default() };
     let found = Tracer::new(&flat, "p", &[0.0], &[0.0], settings).err();
     assert_ne!(found, Some(TraceError::Problem(ProblemError::NoEquation)));
     for scale in [0.0, f64::NAN, f64::INFINITY, -1.0] {
         let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0] - p[0])
+            .boxed()
             .with_scale(ParamId(0), scale);
         let found = error(&problem, &[0.0], &[0.0]);
         assert!(matches!(found, TraceError::Problem(ProblemError::Scale { parameter: "p", .. })));

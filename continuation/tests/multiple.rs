@@ -36,7 +36,8 @@ fn two_modes_with_the_symmetry_of_the_square() {
         let (x, y) = (u[0], u[1]);
         r[0] = p[0] * x - x * (x * x + 3.0 * y * y);
         r[1] = p[0] * y - y * (y * y + 3.0 * x * x);
-    });
+    })
+    .boxed();
     let branch = trunk(&problem, 2);
     assert_eq!(branch.events.len(), 1);
     let event = &branch.events[0];
@@ -69,7 +70,8 @@ fn three_modes_that_resonate() {
             let (y, z) = (u[(i + 1) % 3], u[(i + 2) % 3]);
             r[i] = p[0] * u[i] + 0.5 * y * z - u[i] * (2.0 * sum - u[i] * u[i]);
         }
-    });
+    })
+    .boxed();
     let branch = trunk(&problem, 3);
     assert_eq!(branch.events.len(), 1);
     let crossing = branch.events[0].crossing().unwrap();
@@ -97,7 +99,8 @@ fn near_but_not_the_same() {
             let (x, y) = (u[0], u[1]);
             r[0] = p[0] * x - x * (x * x + 3.0 * y * y);
             r[1] = (p[0] - gap) * y - y * (y * y + 3.0 * x * x);
-        });
+        })
+        .boxed();
         let branch = trunk(&problem, 2);
         let found: Vec<f64> = branch.events.iter().map(|e| e.p).collect();
         assert_eq!(found.len(), 2, "{gap}: {found:?}");
@@ -127,7 +130,8 @@ fn two_modes_with_the_symmetry_of_a_polygon() {
                 let g = (p[0] - square) * y + c * im + 0.3 * u[2] * y;
                 (r[0], r[1]) = (cos * f - sin * g, sin * f + cos * g);
                 r[2] = 0.5 * square - u[2];
-            });
+            })
+            .boxed();
             let branch = trunk(&problem, 3);
             let case = format!("{corners} corners, {c}");
             assert_eq!(branch.events.len(), 1, "{case}: {:?}", branch.events);
@@ -157,7 +161,8 @@ fn a_circle_of_branches_is_not_a_polygon() {
     let problem = DenseProblem::from_residual(2, &["p"], |u, p, r| {
         let square = u[0] * u[0] + u[1] * u[1];
         (r[0], r[1]) = ((p[0] - square) * u[0], (p[0] - square) * u[1]);
-    });
+    })
+    .boxed();
     let branch = trunk(&problem, 2);
     let crossing = branch.events[0].crossing().unwrap();
     assert_eq!((crossing.shape, crossing.leaving.len()), (Shape::Multiple, 1));

@@ -27,7 +27,8 @@ fn imperfect_pitchforks_from_either_branch() {
     for e in [1e-9, 1e-6, 1e-4, 1e-3, 1e-2, 3e-2] {
         let problem = DenseProblem::from_residual(1, &["p"], move |x, p, r| {
             r[0] = p[0] * x[0] - x[0].powi(3) + e;
-        });
+        })
+        .boxed();
         let up = Settings { target: Some(1.0), ..Settings::default() };
         let primary = trace(&problem, &[0.0], &[-1.0], up.clone());
         assert!(primary.events.is_empty());
@@ -54,7 +55,8 @@ fn imperfect_pitchforks_from_either_branch() {
 fn a_gap_that_is_wide_is_none() {
     let problem = DenseProblem::from_residual(1, &["p"], |x, p, r| {
         r[0] = p[0] * x[0] - x[0].powi(3) + 1.0;
-    });
+    })
+    .boxed();
     let settings = Settings { target: Some(1.0), ..Settings::default() };
     let branch = trace(&problem, &[0.7], &[-1.0], settings);
     assert_eq!(near(&problem, &branch), []);
@@ -66,7 +68,8 @@ fn imperfect_transcritical_points_of_either_sign() {
     for e in [1e-4, -1e-4, 1e-2, -1e-2, 0.1, -0.1] {
         let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| {
             r[0] = (u[0] - p[0]) * (u[0] - 2.0) - e;
-        });
+        })
+        .boxed();
         let domain = Some((0.0, 4.1));
         let settings = Settings { target: Some(4.0), domain, ..Settings::default() };
         let branch = trace(&problem, &[0.0], &[0.0], settings);
@@ -96,7 +99,8 @@ fn what_is_no_near_bifurcation() {
         let rate = p[0] * (1.0 - u[0]) * u[1].exp();
         r[0] = -u[0] + rate;
         r[1] = -u[1] + 18.0 * rate - 3.0 * u[1];
-    });
+    })
+    .boxed();
     let settings = Settings { target: Some(0.25), ..Settings::default() };
     assert_eq!(near(&ab, &trace(&ab, &[0.0, 0.0], &[0.0], settings)), []);
     let enz = enz(0.0);
@@ -113,6 +117,7 @@ fn enz(e: f64) -> impl Problem {
         r[0] = p[0] + e - 2.0 * u[0] + u[1] - rate(u[0]);
         r[1] = p[0] - 2.0 * u[1] + u[0] - rate(u[1]);
     })
+    .boxed()
 }
 
 /// Both pitchforks of the symmetric branch are missed by little, at `p` lower by `e/2`.
@@ -153,6 +158,7 @@ fn units_do_not_matter() {
             r[0] = p[0] * x[0] - x[0].powi(3) + 0.3 * x[1] * x[0] + 1e-3;
             r[1] = x[1] + x[0] * x[0] - 0.2 * p[0];
         })
+        .boxed()
     };
     let gap = |(a, b, c): (f64, f64, f64)| {
         let problem = Scaled::new(make(), a, b, &[c]);

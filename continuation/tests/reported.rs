@@ -66,6 +66,7 @@ fn value_just_before_a_fold() {
 #[test]
 fn first_step_away_from_a_branch_point_sees_events_too() {
     let problem = DenseProblem::from_residual(1, &["p"], |x, p, r| r[0] = x[0] * (p[0] - x[0]))
+        .boxed()
         .observing("x", |x, _| x[0]);
     let settings = Settings { target: Some(1.0), ..Settings::default() };
     let trunk = Tracer::new(&problem, "p", &[0.0], &[-1.0], settings)
@@ -97,7 +98,8 @@ fn unknowns_of_very_different_size() {
         let problem = DenseProblem::from_residual(2, &["p"], move |u, p, r| {
             r[0] = p[0] + u[0] - u[0].powi(3);
             r[1] = u[1] / size - u[0];
-        });
+        })
+        .boxed();
         let mut j = Dense::new(2);
         problem.jacobian(&[-1.5, -1.5 * size], &[-2.0], &mut j).unwrap();
         assert!((j.get(0, 0) + 5.75).abs() < 1e-10, "{size:e}: {}", j.get(0, 0));
@@ -171,7 +173,7 @@ fn modes_do_not_depend_on_the_storage() {
 #[test]
 fn eigenvalues_at_a_branch_point_are_its_own() {
     let problem =
-        DenseProblem::from_residual(1, &["p"], |x, p, r| r[0] = p[0] * x[0] - x[0].powi(3));
+        DenseProblem::from_residual(1, &["p"], |x, p, r| r[0] = p[0] * x[0] - x[0].powi(3)).boxed();
     let settings = Settings { target: Some(1.0), eigenvalues: 1, ..Settings::default() };
     let branch = Tracer::new(&problem, "p", &[0.0], &[-1.0], settings)
         .unwrap()
@@ -185,9 +187,9 @@ fn events(
     n: usize,
     start: f64,
     steps: (Option<f64>, Option<f64>),
-    f: impl Fn(&[f64], &[f64], &mut [f64]),
+    f: impl Fn(&[f64], &[f64], &mut [f64]) + 'static,
 ) -> Vec<(String, f64, Option<usize>, Option<usize>)> {
-    let problem = DenseProblem::from_residual(n, &["p"], f);
+    let problem = DenseProblem::from_residual(n, &["p"], f).boxed();
     let settings = Settings {
         target: Some(1.0),
         max_step: steps.0,
@@ -240,15 +242,17 @@ fn hopf_point_beside_a_branch_point_of_the_opposite_exchange() {
 
 #[test]
 fn derivatives_where_the_residual_is_flat() {
-    let flat = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0] - (p[0] / 1e-2).tanh());
+    let flat = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0] - (p[0] / 1e-2).tanh())
+        .boxed();
     let mut out = [1.0];
     flat.parameter_derivative(&[-1.0], &[-1.0], ParamId(0), &mut out).unwrap();
     assert_eq!(out[0], 0.0);
-    let kink = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0].max(0.0) - u[0]);
+    let kink =
+        DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0].max(0.0) - u[0]).boxed();
     kink.parameter_derivative(&[0.0], &[-1.0], ParamId(0), &mut out).unwrap();
     assert_eq!(out[0], 0.0);
     // a value that is rounding says nothing of the length over which f varies
-    let smooth = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0] + u[0].exp());
+    let smooth = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = p[0] + u[0].exp()).boxed();
     let mut j = Dense::new(1);
     smooth.jacobian(&[1e-17], &[-1.0], &mut j).unwrap();
     assert!((j.get(0, 0) - 1.0).abs() < 1e-11, "{}", j.get(0, 0));
@@ -259,7 +263,8 @@ fn branches_that_cross_at_a_small_angle() {
     for angle in [1e-1, 1e-2] {
         let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| {
             r[0] = (u[0] - p[0]) * (u[0] - (1.0 + angle) * p[0]);
-        });
+        })
+        .boxed();
         let settings = Settings { target: Some(1.0), ..Settings::default() };
         let branch = Tracer::new(&problem, "p", &[-1.0], &[-1.0], settings)
             .unwrap()
@@ -275,7 +280,8 @@ fn branches_that_cross_at_a_small_angle() {
 fn no_exchange_of_stability_to_first_order() {
     let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| {
         r[0] = p[0].powi(3) * u[0] - u[0].powi(3);
-    });
+    })
+    .boxed();
     let settings = Settings { target: Some(1.0), ..Settings::default() };
     let branch = Tracer::new(&problem, "p", &[0.0], &[-1.0], settings)
         .unwrap()
@@ -292,7 +298,8 @@ fn starts_at_or_beside_a_fold() {
     // p = u² + u³/2: a fold at 0, another one at u = -4/3
     let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| {
         r[0] = p[0] - u[0] * u[0] - 0.5 * u[0].powi(3);
-    });
+    })
+    .boxed();
     for u in [0.0, 1e-12, 1e-9, 1e-7, -1e-7, 1e-6, 1e-4, -1e-4, 1e-2, 0.1] {
         let p = u * u + 0.5 * f64::powi(u, 3);
         for increasing in [true, false] {
@@ -375,7 +382,8 @@ fn every_direction_a_branch() {
         let problem = DenseProblem::from_residual(n, &["p"], |u, p, r| {
             let square: f64 = u.iter().map(|x| x * x).sum();
             r.iter_mut().zip(u).for_each(|(r, u)| *r = (p[0] - square) * u);
-        });
+        })
+        .boxed();
         let settings = Settings { target: Some(1.0), ..Settings::default() };
         let branch = Tracer::new(&problem, "p", &vec![0.0; n], &[-1.0], settings)
             .unwrap()

@@ -25,6 +25,7 @@ fn reaction() -> impl Problem {
         r[0] = -p[0] * u[0] + u[1];
         r[1] = p[0] * u[0] - u[1];
     })
+    .boxed()
 }
 
 #[test]
@@ -38,7 +39,8 @@ fn conserved_quantities() {
             let x: [f64; 4] = std::array::from_fn(|i| u[i] / unit);
             let (first, second) = (p[0] * x[0] - x[1], x[2] - p[0] * x[3] * x[3]);
             r.copy_from_slice(&[-first, first, -second, 2.0 * second]);
-        });
+        })
+        .boxed();
         for start in [[1.0, 1.0, 1.0, 1.0], [1.0, 1.2, 1.0, 0.9]] {
             deficient(&two, &start.map(|x| unit * x), 1.0, 2.0, 2);
         }
@@ -47,7 +49,8 @@ fn conserved_quantities() {
     let total = DenseProblem::from_residual(2, &["p"], |u, p, r| {
         r[0] = -p[0] * u[0] + u[1];
         r[1] = u[0] + u[1] - 2.0;
-    });
+    })
+    .boxed();
     let settings = Settings { target: Some(2.0), ..Settings::default() };
     let branch = Tracer::new(&total, "p", &[1.0, 1.0], &[1.0], settings)
         .unwrap()
@@ -62,7 +65,8 @@ fn symmetries_that_move_solutions() {
         let rest = p[0] - u[0] * u[0] - u[1] * u[1];
         r[0] = rest * u[0];
         r[1] = rest * u[1];
-    });
+    })
+    .boxed();
     deficient(&circle, &[1.0, 0.0], 1.0, 0.2, 1);
     deficient(&circle, &[0.6, 0.8], 1.0, 2.0, 1);
     deficient(&circle, &[0.7, 0.8], 1.0, 2.0, 1);
@@ -72,7 +76,8 @@ fn symmetries_that_move_solutions() {
     let free = DenseProblem::from_residual(2, &["p"], |x, p, r| {
         r[0] = x[1] - x[0] - 1.0 - p[0];
         r[1] = -r[0];
-    });
+    })
+    .boxed();
     deficient(&free, &[0.0, 1.0], 0.0, 1.0, 1);
     deficient(&free, &[0.0, 1.5], 0.0, 1.0, 1);
 }
@@ -168,7 +173,8 @@ fn random_problems() {
             if kind == 2 {
                 r[n - 1] = r[0] - r[1];
             }
-        });
+        })
+        .boxed();
         let start = vec![0.1 * scale; n];
         if kind == 0 {
             assert_eq!(outcome(&problem, &start, 0.5, 1.0), Ok(()), "{case}");
@@ -180,7 +186,7 @@ fn random_problems() {
 
 #[test]
 fn a_target_at_the_start_is_met_at_once() {
-    let line = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0] - p[0]);
+    let line = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0] - p[0]).boxed();
     for p in [0.0, 0.3, -7e9] {
         let settings = Settings { target: Some(p), ..Settings::default() };
         let branch = Tracer::new(&line, "p", &[p], &[p], settings)
@@ -191,7 +197,8 @@ fn a_target_at_the_start_is_met_at_once() {
     // to be left first: round the circle and back
     let circle = DenseProblem::from_residual(1, &["p"], |u, p, r| {
         r[0] = u[0] * u[0] + p[0] * p[0] - 1.0;
-    });
+    })
+    .boxed();
     let settings = Settings { target: Some(0.0), increasing: Some(true), ..Settings::default() };
     let branch = Tracer::new(&circle, "p", &[1.0], &[0.0], settings)
         .unwrap()
@@ -228,9 +235,9 @@ fn large_problems_in_every_storage() {
         let start = vec![1.0; 2 * n];
         for leak in [0.0, 1.0] {
             let f = || diffusion(n, leak);
-            let band = BandProblem::from_residual(2 * n, (2, 2), &["p"], f());
+            let band = BandProblem::from_residual(2 * n, (2, 2), &["p"], f()).boxed();
             let sparse = SparseProblem::from_residual(2 * n, &pattern, &["p"], f()).unwrap();
-            let dense = DenseProblem::from_residual(2 * n, &["p"], f());
+            let dense = DenseProblem::from_residual(2 * n, &["p"], f()).boxed();
             let outcomes = [
                 outcome(&band, &start, 1.0, 1.5),
                 outcome(&sparse, &start, 1.0, 1.5),
@@ -264,7 +271,8 @@ fn stiff_operators_are_regular() {
                     at(i - 2) - 4.0 * at(i - 1) + 6.0 * at(i) - 4.0 * at(i + 1) + at(i + 2);
                 *r = p[0] * fourth / h.powi(4) + second / h.powi(2) + u[k].powi(3);
             }
-        });
+        })
+        .boxed();
         assert_eq!(outcome(&problem, &vec![0.0; n], 1.2, 0.7), Ok(()), "{n}");
     }
 }

@@ -101,7 +101,8 @@ fn narrow_windows_of_oscillation_are_seen() {
             r[0] = g * x - omega * y;
             r[1] = g * y + omega * x;
             r[2] = x - 2.0 * u[2] + p[0].sin();
-        });
+        })
+        .boxed();
         let start = [k, -l, -0.5 * 1f64.sin()];
         let settings = Settings { target: Some(1.0), ..Settings::default() };
         let branch = follow(&problem, &start, -1.0, settings);
@@ -125,7 +126,8 @@ fn two_pitchforks_within_a_step_are_seen() {
             let (f, g) = (m.growth(p[0]) * x - x * x * x, k * x * x - 3.0 * y);
             r[0] = cos * f - sin * g;
             r[1] = sin * f + cos * g;
-        });
+        })
+        .boxed();
         let settings = Settings { target: Some(1.0), ..Settings::default() };
         let branch = follow(&problem, &[0.0, 0.0], -1.0, settings);
         missed.extend(m.missed(places(&branch, &EventKind::BranchPoint)));
@@ -145,7 +147,8 @@ fn two_folds_within_a_step_are_seen() {
         let problem = DenseProblem::from_residual(2, &["p"], move |u, p, r| {
             r[0] = p[0] - cubic(u[0]);
             r[1] = u[1] - k * u[0] - l * u[0] * u[0];
-        });
+        })
+        .boxed();
         let u = c - 0.9;
         let start = [u, k * u + l * u * u];
         let settings = Settings { target: Some(cubic(c + 0.9)), ..Settings::default() };

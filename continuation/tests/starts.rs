@@ -25,7 +25,8 @@ fn both<P: Problem>(problem: &P, u: &[f64], p: f64, domain: (f64, f64)) -> Branc
 fn newton_leaves_rounding_of_a_trivial_branch() {
     let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| {
         r[0] = u[0] * (p[0] - 1.0 - p[0] * u[0]);
-    });
+    })
+    .boxed();
     let branch = trace(&problem, &[0.2], 0.9, to(2.0));
     assert_eq!(branch.stopped.reason, StopReason::Target, "{:?}", branch.stopped);
     assert_eq!(branch.events.len(), 1, "{:?}", branch.events);
@@ -45,7 +46,8 @@ fn newton_leaves_rounding_of_a_trivial_branch() {
 fn guesses_of_any_smallness() {
     let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| {
         r[0] = u[0] * (1.0 + p[0] * p[0]) + u[0].powi(3);
-    });
+    })
+    .boxed();
     for guess in [0.0, 1e-3, 1e-9, 1e-12, 1e-30, 1e-75, 1e-150, 1e-300] {
         let branch = trace(&problem, &[guess], 0.0, to(2.0));
         assert_eq!(branch.stopped.reason, StopReason::Target, "{guess:e} {:?}", branch.stopped);
@@ -93,7 +95,8 @@ fn branch_points() {
             let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| {
                 let (x, q) = (u[0] / unit - u0, p[0] - p0);
                 r[0] = if cubic { q * x - x * x * x } else { q * x - x * x };
-            });
+            })
+            .boxed();
             let (what, u) = (format!("{p0} {u0} {unit} {cubic}"), [u0 * unit]);
             let kind = EventKind::BranchPoint;
             let branch = trace(&problem, &u, p0, to(p0 + 1.0));
@@ -124,7 +127,8 @@ fn folds() {
         let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| {
             let x = u[0] / unit - u0;
             r[0] = p[0] - p0 - x * x;
-        });
+        })
+        .boxed();
         let (what, kind) = (format!("{p0} {u0} {unit}"), EventKind::Fold);
         let branch = trace(&problem, &[u0 * unit], p0, to(p0 + 1.0));
         assert_eq!((branch.events.len(), branch.stopped.reason), (1, StopReason::Target), "{what}");
@@ -145,7 +149,8 @@ fn hopf_points() {
             let square = x * x + y * y;
             r[0] = unit * (q * x - 3.0 * y - x * square);
             r[1] = unit * (3.0 * x + q * y - y * square);
-        });
+        })
+        .boxed();
         let (what, kind, u) = (format!("{p0} {u0} {unit}"), EventKind::Hopf, [u0 * unit, 0.0]);
         let branch = trace(&problem, &u, p0, to(p0 + 1.0));
         at_start(&branch, &kind, p0, (0, 2), &what);
@@ -177,7 +182,8 @@ fn estimates_of_special_points_at_the_start() {
                 1 => (a * q * x - x * x * x + b * x * x, x - y),
                 _ => (q * x - a * y - x * (x * x + y * y), a * x + q * y + b * y * x * x),
             };
-        });
+        })
+        .boxed();
         let off = 10f64.powf(-9.0 - 7.0 * random().abs());
         let u = [
             unit * (u0 + if kind == 0 { off } else { 0.0 }),
@@ -214,7 +220,8 @@ fn crossings_close_behind_the_start() {
             let problem = DenseProblem::from_residual(2, &["p"], move |u, p, r| {
                 r[0] = p[0] * u[0] - u[0].powi(3);
                 r[1] = sign * (p[0] - behind) * u[1] - u[1].powi(3);
-            });
+            })
+            .boxed();
             let settings = Settings { target: Some(1.0), ..Settings::default() };
             let branch = Tracer::new(&problem, "p", &[0.0, 0.0], &[0.0], settings)
                 .unwrap()

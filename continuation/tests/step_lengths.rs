@@ -51,7 +51,8 @@ fn ab() {
         let rate = p[0] * (1.0 - u[0]) * u[1].exp();
         r[0] = -u[0] + rate;
         r[1] = -u[1] + 18.0 * rate - 3.0 * u[1];
-    });
+    })
+    .boxed();
     let known = [
         ("hopf", 0.111_153_484_190),
         ("fold", 0.111_565_080_074),
@@ -69,7 +70,8 @@ fn enz() {
         let rate = |s: f64| 100.0 * s / (1.0 + s + s * s);
         r[0] = p[0] - 2.0 * s[0] + s[1] - rate(s[0]);
         r[1] = p[0] - 2.0 * s[1] + s[0] - rate(s[1]);
-    });
+    })
+    .boxed();
     let known = [
         ("fold", 34.356_924_998_526),
         ("branch-point", 34.222_886_544_190),
@@ -88,6 +90,7 @@ fn pp2() {
         r[0] = 3.0 * u * (1.0 - u) - u * v - p[0] * (1.0 - (-5.0 * u).exp());
         r[1] = -v + 3.0 * u * v;
     })
+    .boxed()
     .observing("u", |x, _| x[0]);
     compare(&[("branch-point", 0.6)], 1.0, |s| {
         follow(&problem, "p", &[0.0, 0.0], &[0.0], Settings { target: Some(1.0), ..s })

@@ -22,6 +22,7 @@ fn springs(c: f64) -> impl Problem {
         r[0] = 40.0 * (0.8 * apart - 0.6 * sum);
         r[1] = 40.0 * (0.6 * apart + 0.8 * sum);
     })
+    .boxed()
     .with_stability(Stability::None)
     .observing("force", move |u, _| {
         let (a, b) = shape(u);

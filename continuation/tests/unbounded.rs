@@ -6,7 +6,8 @@ use continuation::{Branch, DenseProblem, Settings, StopReason, Tracer};
 use std::ops::ControlFlow;
 
 fn follow(f: impl Fn(f64, f64) -> f64 + 'static, (u, p): (f64, f64), settings: Settings) -> Branch {
-    let problem = DenseProblem::from_residual(1, &["p"], move |u, p, r| r[0] = f(u[0], p[0]));
+    let problem =
+        DenseProblem::from_residual(1, &["p"], move |u, p, r| r[0] = f(u[0], p[0])).boxed();
     Tracer::new(&problem, "p", &[u], &[p], settings)
         .unwrap()
         .run(&mut |_| ControlFlow::Continue(()))
@@ -63,7 +64,8 @@ fn random_poles() {
             let g = (y - k * p[0].sin()) * x - 1.0;
             r[0] = cos * f - sin * g;
             r[1] = sin * f + cos * g;
-        });
+        })
+        .boxed();
         let x = sign * size / (1.0 - from * pole).powf(1.0 / f64::from(order));
         let y = 1.0 / x + k * from.sin();
         let start = [cos * x - sin * y, sin * x + cos * y];

@@ -8,6 +8,7 @@ use std::ops::ControlFlow;
 /// `u = p` from −1 to 1, on which `g` is observed.
 fn line(g: impl Fn(f64) -> f64 + 'static, watches: &[Watch]) -> Branch {
     let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0] - p[0])
+        .boxed()
         .observing("g", move |u, _| g(u[0]));
     let settings = Settings { target: Some(1.0), ..Settings::default() };
     Tracer::new(&problem, "p", &[-1.0], &[-1.0], settings)

@@ -166,7 +166,8 @@ fn kinks_noise_and_steep_functions_are_not_accused() {
     for (case, f) in hard.into_iter().enumerate() {
         let problem = BandProblem::from_residual(3, (0, 0), &["p"], move |u, p, r| {
             u.iter().zip(r).for_each(|(u, r)| *r = f(*u, p[0]));
-        });
+        })
+        .boxed();
         let found = said(&problem);
         assert!(!found.contains("wrong"), "{case} {found}");
     }

@@ -20,8 +20,13 @@ const CLEAR_SLOPE: f64 = 0.1;
 const ERROR: f64 = 0.025;
 /// Where a parabola through the last three points may turn, in steps, and may be wrong about where.
 const FARTHEST: f64 = 1.2;
+/// Part of its value to which a function falls at the end of a step behind which, or before which, it
+/// turns.
+const NEARLY: f64 = 0.02;
 /// Largest relative change of the imaginary part from point to point of one and the same pair.
 const SAME_PAIR: f64 = 0.3;
+/// The same of a pair near to the axis: pairs that avoid each other there turn sharply.
+const SAME_NEAR: f64 = 0.15;
 /// Distance of a pair from the axis, relative to its imaginary part, from which it is watched closely.
 const NEAR: f64 = 0.2;
 /// The parameter's part of the tangent, relative to its range, below which its turns are rounding.
@@ -94,11 +99,12 @@ impl Stretch<'_> {
         if !self.same_counts() || a.pairs == 0 {
             return false;
         }
-        let same = |x: &State, y: &State| {
-            let largest = x.frequency.abs().max(y.frequency.abs());
-            (x.frequency - y.frequency).abs() <= SAME_PAIR * largest
-        };
         let near = |x: &State| x.pair.abs() < NEAR * x.frequency;
+        let same = |x: &State, y: &State| {
+            let limit = if near(x) || near(y) { SAME_NEAR } else { SAME_PAIR };
+            let largest = x.frequency.abs().max(y.frequency.abs());
+            (x.frequency - y.frequency).abs() <= limit * largest
+        };
         if !same(a, b) {
             return self.h > 4.0 * SHORT * self.longest && (near(a) || near(b));
         }
@@ -127,7 +133,8 @@ fn touches([before, a, b]: [f64; 3], past: f64, h: f64) -> bool {
     let turn = -slope / (2.0 * curvature);
     let value = sign * (a + 0.5 * slope * turn);
     let error = ERROR * curvature.abs() * h * h;
-    turn < FARTHEST * h && value < CLEAR * a.abs().min(b.abs()) + error
+    let close = turn < FARTHEST * h || b.abs() < NEARLY * a.abs();
+    close && value < CLEAR * a.abs().min(b.abs()) + error
 }
 
 #[cfg(test)]

@@ -117,7 +117,7 @@ fn buckling_of_a_column_on_an_elastic_foundation() {
 /// AUTO's `enz` with the rate `q`: on the symmetric branch `3 + q R'(s) = 0`, `p = s + q R(s)`.
 #[test]
 fn symmetry_breaking_on_a_branch_that_moves() {
-    let problem = || DenseProblem::from_residual(2, &["p", "q"], enz);
+    let problem = || DenseProblem::from_residual(2, &["p", "q"], enz).boxed();
     fn enz(s: &[f64], p: &[f64], r: &mut [f64]) {
         let rate = |s: f64| p[1] * s / (1.0 + s + s * s);
         r[0] = p[0] - 2.0 * s[0] + s[1] - rate(s[0]);
@@ -154,7 +154,8 @@ fn symmetry_breaking_on_a_branch_that_moves() {
 fn an_imperfection_ends_the_curve_with_a_reason() {
     let problem = DenseProblem::from_residual(1, &["p", "e"], |x, p, r| {
         r[0] = p[0] * x[0] - x[0].powi(3) + p[1];
-    });
+    })
+    .boxed();
     let branch = trace(&problem, "p", &[0.0], &[-1.0, 0.0], 1.0);
     let event = branch.events_of(&EventKind::BranchPoint).next().unwrap();
     let curve = BranchPointCurve::at(&problem, &branch, event, "e").unwrap();

@@ -93,7 +93,7 @@ fn fold_and_pair(x: &[f64], p: &[f64], r: &mut [f64]) {
 /// q)²`, where the eigenvalue `−2x` vanishes at `q = 0.3` too.
 #[test]
 fn zero_hopf_points_on_a_fold_curve_and_on_a_hopf_curve() {
-    let problem = DenseProblem::from_residual(3, &["p", "q"], mixed(fold_and_pair, 3));
+    let problem = DenseProblem::from_residual(3, &["p", "q"], mixed(fold_and_pair, 3)).boxed();
     let start = [1.3, -0.35, -0.175];
     let branch = trace(&problem, "p", &start, &[1.0, 0.0], -1.0);
     println!("{:?}", branch.events.iter().map(|e| (e.kind.to_string(), e.p)).collect::<Vec<_>>());
@@ -141,7 +141,7 @@ fn two_pairs(x: &[f64], p: &[f64], r: &mut [f64]) {
 /// Hopf points at `p = q²`, with `l₁` proportional to `q − 0.25`, and at `p = 0.2 − q`.
 #[test]
 fn generalised_and_double_hopf_points() {
-    let problem = DenseProblem::from_residual(4, &["p", "q"], mixed(two_pairs, 4));
+    let problem = DenseProblem::from_residual(4, &["p", "q"], mixed(two_pairs, 4)).boxed();
     let branch = trace(&problem, "p", &[0.3, 0.15, 0.075, 0.0375], &[-1.0, 0.0], 0.1);
     let hopf = branch.events_of(&EventKind::Hopf).next().unwrap();
     let double = 0.5 * (1.8_f64.sqrt() - 1.0);

@@ -118,6 +118,7 @@ fn co_oxidation() -> impl Problem {
         r[1] = p[0] * z - 0.1 * y - 10.0 * x * y;
         r[2] = 0.0675 * (z - p[1] * s);
     })
+    .boxed()
 }
 
 fn co_branch<P: Problem>(problem: &P) -> Branch {
@@ -170,6 +171,7 @@ fn no_cusp_where_another_mode_becomes_critical() {
         r[0] = b - h - thrust * b + p[0];
         r[1] = 16.0 * a - 4.0 * thrust * a;
     })
+    .boxed()
     .with_stability(Stability::EnergyHessian);
     let branch = trace(&arch, "load", &[1.5, 0.0], &[0.0, 1.5], 3.0);
     let fold = branch.events_of(&EventKind::Fold).next().unwrap();

@@ -138,7 +138,7 @@ fn reactor_takens<P: Problem>(problem: &P) {
 /// A stirred tank: Bogdanov-Takens at `B = (1 + β)³/β`, from either Hopf point.
 #[test]
 fn the_double_zero_of_a_reactor_in_every_domain() {
-    reactor_takens(&DenseProblem::from_residual(2, &["d", "b"], reactor));
+    reactor_takens(&DenseProblem::from_residual(2, &["d", "b"], reactor).boxed());
     reactor_takens(&Exact::new(2, &["d", "b"], reactor, reactor_derivatives));
 }
 
@@ -157,7 +157,8 @@ fn a_hopf_curve_on_which_nothing_moves() {
                 let g = p[0] - a + c * a * a / 2.0;
                 r[0] = g * x[0] - x[1];
                 r[1] = g * x[1] + x[0];
-            });
+            })
+            .boxed();
             let branch = trace(&problem, "p", &[0.0, 0.0], &[-0.5, q0], 0.5);
             let event = branch.events_of(&EventKind::Hopf).next().unwrap();
             let domain = (0.5 * q0, 2.0 * q0);
@@ -176,7 +177,8 @@ fn a_branch_point_curve_on_which_nothing_moves() {
     for b in [0.0, 0.1, 1.0, -2.0] {
         let problem = DenseProblem::from_residual(1, &["p", "b"], |x, p, r| {
             r[0] = p[0] * x[0] - x[0].powi(3) + p[1] * x[0] * x[0];
-        });
+        })
+        .boxed();
         let branch = trace(&problem, "p", &[0.0], &[-1.0, b], 1.0);
         let event = branch.events_of(&EventKind::BranchPoint).next().unwrap();
         let curve = BranchPointCurve::at(&problem, &branch, event, "b").unwrap();
