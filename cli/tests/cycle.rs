@@ -228,7 +228,8 @@ fn a_trace_goes_in_the_device_s_parameter() {
     let (names, rows) = columns(&place.path().join("o/branch.csv"));
     let stability = ["unstable_antisymmetric", "unstable_modes", "first_n", "stable"];
     assert_eq!(names[15..17], ["event", "base"]);
-    assert_eq!(names[17..], stability);
+    assert_eq!(names[17..21], stability);
+    assert_eq!(names[21..], ["elements_per_film_length"]);
     assert_eq!(rows.last().unwrap()[16], "0.75");
     let load = ["device.kind=dead-load", "path.start=0", "path.end=2"];
     let mut trace = vec!["trace", "fig12", "--elements", "100", "--json"];

@@ -45,6 +45,7 @@ pub mod observables;
 pub mod params;
 mod plate;
 pub mod quadrature;
+pub mod resolution;
 pub mod ring_load;
 pub mod scalar;
 pub mod spline;
@@ -59,5 +60,6 @@ pub use observables::{Observation, Profile};
 pub use params::{
     Dimensionless, Law, ParameterError, Physical, Scales, Shell, Stiffness, default_gas_exponent,
 };
+pub use resolution::Resolution;
 pub use ring_load::{RingGroups, RingLoadProblem};
 pub use trace::{ContactBranch, force_watches, trace_contact};

@@ -1,7 +1,7 @@
 //! `diagram.json`: the branches of a diagram, how they hang together, and the table for people.
 
-use super::events::{EventOf, StabilityOf};
-use super::result::{StabilityRecord, TraceResult};
+use super::events::{EventOf, ResolutionOf, StabilityOf};
+use super::result::{ResolutionRecord, StabilityRecord, TraceResult};
 use super::summary::{aligned, count};
 use crate::pictures::Curve;
 use continuation::StopReason;
@@ -135,6 +135,12 @@ impl DiagramResult {
         records.reduce(|all, one| all.and(&one))
     }
 
+    /// How well the elements resolve the branch where they do worst; `None` where that was not examined.
+    fn resolution(&self) -> Option<ResolutionRecord> {
+        let records = self.branches.iter().filter_map(|one| one.trace.resolution);
+        records.reduce(|all, one| all.and(&one))
+    }
+
     /// Whether all numbers of unstable modes are certain; `None` where there are none.
     fn certified(&self) -> Option<bool> {
         self.branches.iter().filter_map(|one| one.trace.certified).reduce(|a, b| a && b)
@@ -166,6 +172,9 @@ impl Serialize for DiagramResult {
         map.serialize_entry("certified", &self.certified())?;
         if let Some(stability) = &self.stability() {
             map.serialize_entry("stability", &StabilityOf(stability))?;
+        }
+        if let Some(resolution) = &self.resolution() {
+            map.serialize_entry("resolution", &ResolutionOf(resolution))?;
         }
         map.serialize_entry("newton_iterations", &self.newton_iterations)?;
         map.serialize_entry("seconds", &self.seconds)?;
@@ -264,6 +273,9 @@ pub(crate) fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> 
     let mut out = aligned(&rows);
     if let Some(stability) = result.stability() {
         out.push_str(&stability.text());
+    }
+    if let Some(resolution) = result.resolution() {
+        out.push_str(&resolution.text());
     }
     out.push('\n');
     out.push_str(&nearly(result));

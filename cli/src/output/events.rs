@@ -1,6 +1,6 @@
 //! `events.json`: special points, why the branch ended, what it cost.
 
-use super::result::{EventRecord, MaxwellRecord, StabilityRecord, TraceResult};
+use super::result::{EventRecord, MaxwellRecord, ResolutionRecord, StabilityRecord, TraceResult};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// The JSON, indented, with a newline at the end; NaN and infinities are null.
@@ -33,6 +33,9 @@ impl Serialize for Document<'_> {
         if let Some(stability) = &result.stability {
             map.serialize_entry("stability", &StabilityOf(stability))?;
         }
+        if let Some(resolution) = &result.resolution {
+            map.serialize_entry("resolution", &ResolutionOf(resolution))?;
+        }
         map.serialize_entry("stopped_because", &result.stopped_because.to_string())?;
         map.serialize_entry("stopped_detail", &result.stopped_detail)?;
         map.serialize_entry("points", &result.points)?;
@@ -58,6 +61,22 @@ impl Serialize for StabilityOf<'_> {
             map.serialize_entry("certain", &self.0.certain)?;
             map.serialize_entry("not_located", &self.0.not_located)?;
         }
+        map.end()
+    }
+}
+
+/// How well the elements resolve the solution.
+pub(super) struct ResolutionOf<'a>(pub(super) &'a ResolutionRecord);
+
+impl Serialize for ResolutionOf<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("enough", &self.0.enough)?;
+        map.serialize_entry("z0", &self.0.z0)?;
+        map.serialize_entry("elements_per_film_length", &self.0.per_film_length)?;
+        map.serialize_entry("elements_per_wavelength", &self.0.per_wavelength)?;
+        map.serialize_entry("elements", &self.0.elements)?;
+        map.serialize_entry("elements_wanted", &self.0.wanted)?;
         map.end()
     }
 }

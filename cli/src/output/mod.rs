@@ -28,7 +28,7 @@ pub(crate) use folder::Folder;
 pub(crate) use manifest::{Earlier, Files, with_files};
 pub(crate) use map::{MapCurve, MapPoint, MapResult, map_json, map_summary};
 pub(crate) use result::{Cell, ContactRow, EventRecord, FormRecord, MaxwellRecord, Table};
-pub(crate) use result::{ModeRecord, Pictures, StabilityRecord, TraceResult};
+pub(crate) use result::{ModeRecord, Pictures, ResolutionRecord, StabilityRecord, TraceResult};
 pub(crate) use summary::summary;
 pub(crate) use sweep::{CaseRecord, Kept, Status, Store, StoreError, SweepResult, events_table};
 pub(crate) use sweep::{

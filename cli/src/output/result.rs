@@ -307,6 +307,44 @@ impl StabilityRecord {
     }
 }
 
+/// How well the elements resolve what the solution varies on, where that is worst.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ResolutionRecord {
+    /// Elements per film length.
+    pub(crate) per_film_length: f64,
+    /// Elements per wavelength of the shell.
+    pub(crate) per_wavelength: f64,
+    /// Plate distance where that is.
+    pub(crate) z0: f64,
+    /// Whether both are enough.
+    pub(crate) enough: bool,
+    /// Elements of the mesh.
+    pub(crate) elements: usize,
+    /// Elements that would be enough there.
+    pub(crate) wanted: usize,
+}
+
+impl ResolutionRecord {
+    /// A warning in a sentence, where there is one to be given.
+    pub(super) fn text(&self) -> String {
+        if self.enough {
+            return String::new();
+        }
+        format!(
+            "not resolved: at z0 = {:.5} {} elements are {:.2} per film length (0.6 are needed) and {:.1} \
+             per wavelength of the shell (10): folds and forces may be those of the mesh; take \
+             mesh.elements = {} or more\n",
+            self.z0, self.elements, self.per_film_length, self.per_wavelength, self.wanted,
+        )
+    }
+
+    /// The worse of two.
+    pub(super) fn and(self, other: &ResolutionRecord) -> ResolutionRecord {
+        let ratio = |one: &ResolutionRecord| one.wanted as f64 / one.elements as f64;
+        if ratio(&self) >= ratio(other) { self } else { *other }
+    }
+}
+
 /// Two states of equal total potential at one value of the device's parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MaxwellRecord {
@@ -369,6 +407,8 @@ pub(crate) struct TraceResult {
     pub(crate) maxwell: Option<Vec<MaxwellRecord>>,
     /// What its stability was examined for; `None` where that has no meaning.
     pub(crate) stability: Option<StabilityRecord>,
+    /// How well its elements resolve a contact branch; `None` where that was not examined.
+    pub(crate) resolution: Option<ResolutionRecord>,
     /// Why the branch ended.
     pub(crate) stopped_because: StopReason,
     /// The same in a sentence; may be empty.

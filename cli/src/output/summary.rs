@@ -16,6 +16,9 @@ pub(crate) fn summary(result: &TraceResult, folder: Option<&Path>) -> String {
     if let Some(stability) = &result.stability {
         out.push_str(&stability.text());
     }
+    if let Some(resolution) = &result.resolution {
+        out.push_str(&resolution.text());
+    }
     out.push('\n');
     let _ = write!(out, "{}: stopped at {}", result.case, result.stopped_because);
     if !result.stopped_detail.is_empty() {

@@ -40,6 +40,7 @@ pub(crate) fn example() -> TraceResult {
         ],
         maxwell: None,
         stability: None,
+        resolution: None,
         stopped_because: StopReason::Target,
         stopped_detail: String::new(),
         points: 2,

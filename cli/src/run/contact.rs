@@ -1,6 +1,7 @@
 //! The contact problem: a shell between two plates.
 
 use super::form::{StabilityColumns, certified, form};
+use super::resolution::Resolved;
 use super::stability::Stability;
 use super::states::of_contact;
 use super::{Observer, RunError, listen, settings};
@@ -30,9 +31,11 @@ pub(super) fn run(
 ) -> Result<TraceResult, RunError> {
     let (traced, stability) = scanned(case, contact, observer)?;
     let Traced { problem, branch, maxwell, seconds } = traced;
-    let pictures = pictures(&case.name, &problem, &branch, &stability);
+    let resolved = Resolved::of(&problem, &branch);
+    let pictures = pictures(&resolved.titled(&case.name), &problem, &branch, &stability);
     let maxwell = Some(maxwell);
-    Ok(TraceResult { pictures, maxwell, ..examined(case, &branch, seconds, &stability) })
+    let result = examined(case, &branch, seconds, &stability, Some(&resolved));
+    Ok(TraceResult { pictures, maxwell, ..result })
 }
 
 /// The same with the states along the branch.
@@ -44,9 +47,12 @@ pub(super) fn run_reported(
     let (traced, stability) = scanned(case, contact, observer)?;
     let Traced { problem, branch, maxwell, seconds } = traced;
     let states = of_contact(&problem, &branch.branch, branch.branch.points.len());
-    let pictures = Pictures { states, ..pictures(&case.name, &problem, &branch, &stability) };
+    let resolved = Resolved::of(&problem, &branch);
+    let title = resolved.titled(&case.name);
+    let pictures = Pictures { states, ..pictures(&title, &problem, &branch, &stability) };
     let maxwell = Some(maxwell);
-    Ok(TraceResult { pictures, maxwell, ..examined(case, &branch, seconds, &stability) })
+    let result = examined(case, &branch, seconds, &stability, Some(&resolved));
+    Ok(TraceResult { pictures, maxwell, ..result })
 }
 
 /// The same without what pictures show.
@@ -55,8 +61,10 @@ pub(super) fn run_plain(
     contact: &ContactCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
-    let Traced { branch, maxwell, seconds, .. } = traced(case, contact, observer)?;
-    Ok(TraceResult { maxwell: Some(maxwell), ..result(case, &branch, seconds) })
+    let Traced { problem, branch, maxwell, seconds } = traced(case, contact, observer)?;
+    let resolved = Resolved::of(&problem, &branch);
+    let result = examined(case, &branch, seconds, &Stability::default(), Some(&resolved));
+    Ok(TraceResult { maxwell: Some(maxwell), ..result })
 }
 
 /// A branch under the case's device.
@@ -209,9 +217,9 @@ pub(super) fn no_start(case: &ResolvedCase, detail: TraceError) -> RunError {
     }
 }
 
-/// A traced branch as plain numbers, without pictures.
+/// A traced branch as plain numbers, without pictures and without a look at its stability and mesh.
 pub(crate) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) -> TraceResult {
-    examined(case, traced, seconds, &Stability::default())
+    examined(case, traced, seconds, &Stability::default(), None)
 }
 
 fn examined(
@@ -219,8 +227,9 @@ fn examined(
     traced: &ContactBranch,
     seconds: f64,
     stability: &Stability,
+    resolved: Option<&Resolved>,
 ) -> TraceResult {
-    let (table, events) = tabulate(traced, stability);
+    let (table, events) = tabulate(traced, stability, resolved);
     let branch = &traced.branch;
     TraceResult {
         case: case.name.clone(),
@@ -235,6 +244,7 @@ fn examined(
         seconds,
         maxwell: None,
         stability: Some(stability.record()),
+        resolution: resolved.and_then(Resolved::record),
         pictures: Pictures::default(),
     }
 }
@@ -315,7 +325,11 @@ pub(super) fn row(traced: &ContactBranch, index: usize, point: &Point) -> Contac
     }
 }
 
-fn tabulate(traced: &ContactBranch, scanned: &Stability) -> (Table, Vec<EventRecord>) {
+fn tabulate(
+    traced: &ContactBranch,
+    scanned: &Stability,
+    resolved: Option<&Resolved>,
+) -> (Table, Vec<EventRecord>) {
     let branch = &traced.branch;
     let stability = StabilityColumns::of(branch);
     let loaded = branch.parameter != "z0";
@@ -325,12 +339,16 @@ fn tabulate(traced: &ContactBranch, scanned: &Stability) -> (Table, Vec<EventRec
         .and(own.into_iter().collect())
         .and(stability.titles())
         .and(scanned.titles());
+    let counted = table.columns().len();
+    table = table.and(resolved.map(Resolved::title).into_iter().collect());
     for (index, point) in branch.points.iter().enumerate() {
         let mut cells = row(traced, index, point).cells();
         cells.extend(base.then(|| point.p.into()));
         cells.extend(stability.cells(point));
-        cells.resize(table.columns().len() - scanned.titles().len(), Cell::Empty);
+        cells.resize(counted - scanned.titles().len(), Cell::Empty);
         cells.extend(scanned.cells(index, point));
+        cells.resize(counted, Cell::Empty);
+        cells.extend(resolved.map(|resolved| resolved.cell(index)));
         table.push(cells);
     }
     let events = branch.events.iter().enumerate().map(|(k, event)| {
@@ -463,13 +481,14 @@ pub(super) fn drawn(
 /// A branch of a diagram and its force over the plate distance.
 pub(super) fn on_diagram(
     case: &ResolvedCase,
+    problem: &ContactProblem,
     traced: &ContactBranch,
     stability: &Stability,
 ) -> (TraceResult, Curve) {
     let points = traced.branch.points.iter().enumerate();
     let rows: Vec<ContactRow> = points.map(|(i, p)| row(traced, i, p)).collect();
     let curve = drawn(traced, stability, &rows, "force", &|r| r.z0, &|r| r.force);
-    (examined(case, traced, 0.0, stability), curve)
+    (examined(case, traced, 0.0, stability, Some(&Resolved::of(problem, traced))), curve)
 }
 
 /// Points to draw: the first zero of the force, and three more, evenly spaced up to the end of

@@ -179,7 +179,7 @@ pub(crate) fn run_diagram(
                     observer(DiagramProgress { branches: done - waiting, waiting, branch })
                 };
                 let stability = Stability::of(case, &problem, &mut traced, scan);
-                let (mut trace, curve) = contact::on_diagram(case, &traced, &stability);
+                let (mut trace, curve) = contact::on_diagram(case, &problem, &traced, &stability);
                 if reported {
                     trace.pictures.states = states::of_contact(&problem, &traced.branch, points);
                 }

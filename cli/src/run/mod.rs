@@ -7,6 +7,7 @@ mod diagram;
 mod form;
 mod general;
 mod map;
+mod resolution;
 mod ring_load;
 mod stability;
 mod states;

@@ -198,6 +198,7 @@ pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> Trac
         maxwell: None,
         stability: None,
         table,
+        resolution: None,
         stopped_because: branch.stopped.reason,
         stopped_detail: branch.stopped.detail.clone(),
         points: branch.points.len(),

@@ -158,6 +158,7 @@ pub(super) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) 
         parameter: branch.parameter.clone(),
         events: events.collect(),
         table,
+        resolution: None,
         stopped_because: branch.stopped.reason,
         stopped_detail: branch.stopped.detail.clone(),
         points: branch.points.len(),

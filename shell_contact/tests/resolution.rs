@@ -1,0 +1,78 @@
+//! A mesh that is called fine enough has the special points and forces of one four times as fine.
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use continuation::{EventKind, Settings};
+use shell_contact::resolution::Resolution;
+use shell_contact::{ContactProblem, Dimensionless, Law, Mesh, Shell, trace_contact};
+use std::ops::ControlFlow;
+
+struct Random(u64);
+
+impl Random {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Folds of a traced branch, force at its end, the least resolution, and why it ended; `None` where the
+/// film pulls the shell onto the plate at the start.
+fn traced(groups: &Dimensionless, elements: usize) -> Option<(usize, f64, Resolution, String)> {
+    let shell = Shell { law: Law::Hooke, poisson: 0.5 };
+    let mesh = Mesh::uniform(elements).unwrap();
+    let problem = ContactProblem::new(&shell, groups, mesh).unwrap();
+    let settings = Settings {
+        target: Some(0.75),
+        max_step: Some(0.01),
+        domain: Some((f64::NEG_INFINITY, 3.0)),
+        max_points: 3000,
+        ..Settings::default()
+    };
+    let start = 1.1 + 6.0 * groups.film;
+    let traced =
+        trace_contact(&problem, start, settings, &mut |_| ControlFlow::Continue(())).ok()?;
+    let branch = traced.branch;
+    let all = branch
+        .points
+        .iter()
+        .map(|point| problem.resolution(&point.u, &problem.parameters_at(point.p)).unwrap());
+    let least = all.reduce(Resolution::least).unwrap();
+    let force = branch.observables.iter().position(|name| name == "force").unwrap();
+    let end = branch.points.last().unwrap().observables[force];
+    let folds = branch.events_of(&EventKind::Fold).count();
+    Some((folds, end, least, format!("{:?}", branch.stopped.reason)))
+}
+
+#[test]
+fn what_is_called_resolved_is() {
+    let mut random = Random(1);
+    let (mut enough, mut coarse, mut alarms) = (0, 0, 0);
+    for case in 0..40 {
+        let groups = Dimensionless {
+            bending: 10f64.powf(random.between(-6.5, -2.0)),
+            pressure: [0.0, 0.05, 0.2][case % 3],
+            adhesion: 10f64.powf(random.between(-4.5, -1.0)),
+            film: 10f64.powf(random.between(-2.6, -1.0)),
+            surface_tension: 0.0,
+            gas_exponent: 1.07,
+        };
+        let Some((folds, end, least, stop)) = traced(&groups, 60) else { continue };
+        let Some((known, right, _, whole)) = traced(&groups, 240) else { continue };
+        let same =
+            folds == known && stop == whole && (end - right).abs() < 0.02 * right.abs().max(1.0);
+        println!("{case}: {least:?} {folds} {known} {end:.4} {right:.4} {stop} {whole} {same}");
+        if least.is_enough() {
+            enough += 1;
+            assert!(
+                same,
+                "{case}: {groups:?}: {least:?}, {folds} folds of {known}, {end} for {right}"
+            );
+        } else {
+            coarse += 1;
+            alarms += usize::from(same);
+        }
+    }
+    println!("{enough} fine enough, {coarse} not, of which {alarms} would have been");
+    assert!(enough > 10 && coarse > 5 && alarms < 2 * coarse / 3);
+}
