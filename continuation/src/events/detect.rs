@@ -97,6 +97,8 @@ pub(crate) struct Detector {
     // what the latest step leaves open
     doubt: Option<&'static str>,
     plateau: Plateau,
+    // whether the step is about the shortest there is
+    finest: bool,
 }
 
 /// Which eigenvalues beside the critical ones make an event when they cross the imaginary axis.
@@ -173,6 +175,7 @@ impl Detector {
             futile: 0,
             doubt: None,
             plateau: Plateau::Refuse,
+            finest: false,
         })
     }
 
@@ -184,6 +187,12 @@ impl Detector {
     /// Says what becomes of steps onto a plateau of the parameter.
     pub(crate) fn set_plateau(&mut self, plateau: Plateau) {
         self.plateau = plateau;
+    }
+
+    /// Says whether the step is about the shortest there is: several pairs that cross within it are one
+    /// point.
+    pub(crate) fn set_finest(&mut self, finest: bool) {
+        self.finest = finest;
     }
 
     /// The observables that are watched.
@@ -351,7 +360,8 @@ impl Detector {
         let hopf = if a.pairs == b.pairs {
             // a pair that crosses beside a fold or a branch point, or beside another pair
             let alone = pairs == 1 && change == 2 && !fold && !flip;
-            if pairs > 0 && !alone && !final_say {
+            let divided = if pairs > 1 && !fold && !flip { self.finest } else { final_say };
+            if pairs > 0 && !alone && !divided {
                 return Err(Refusal::Stability);
             }
             pairs > 0

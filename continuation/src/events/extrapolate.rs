@@ -29,11 +29,27 @@ const SAME_PAIR: f64 = 0.3;
 const SAME_NEAR: f64 = 0.15;
 /// Distance of a pair from the axis, relative to its imaginary part, from which it is watched closely.
 const NEAR: f64 = 0.2;
+/// The same of a pair whose distance may be rounding.
+const UNDAMPED: f64 = 1e-11;
 /// The parameter's part of the tangent, relative to its range, below which its turns are rounding.
 const STEEP: f64 = 1e-6;
 /// Part of the longest step from which on nearly touching zero does not count: what touches it
 /// without crossing does so at every length.
 const SHORT: f64 = 1.0 / 64.0;
+/// The same of what touches zero more closely: to this part of the nearer end's value.
+const SHORTEST: f64 = 1e-5;
+const CLOSE: f64 = 0.02;
+
+/// What a step may hide.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Hidden {
+    /// Nothing that shows.
+    Nothing,
+    /// Two special points, perhaps: a shorter step will tell.
+    Pair,
+    /// The same, and shorter steps do not tell.
+    Unknown,
+}
 
 /// A step and the point before it.
 pub(crate) struct Stretch<'s> {
@@ -52,17 +68,28 @@ pub(crate) struct Stretch<'s> {
 
 impl Stretch<'_> {
     /// Whether the step may hide two special points.
-    pub(crate) fn hides_pair(&self) -> bool {
+    pub(crate) fn hides_pair(&self) -> Hidden {
         let (a, b) = (self.a, self.b);
-        if self.h <= SHORT * self.longest {
-            return false;
-        }
         let fold = a.tp * b.tp <= 0.0;
-        !fold && self.hides_folds() || self.hides_pairs() || {
-            // a pitchfork met from its side touches zero by itself
-            let explained = fold || a.orientation != b.orientation;
-            !explained && self.same_counts() && (self.touches(|x| x.real) || self.bounces())
+        // a pitchfork met from its side touches zero by itself
+        let explained = fold || a.orientation != b.orientation;
+        // it has reached the axis, to rounding
+        if self.same_counts() && a.pairs > 0 && is_damped(a) && !is_damped(b) {
+            return Hidden::Unknown;
         }
+        if self.h <= SHORT * self.longest {
+            let real = !explained && self.same_counts() && self.touches(|x| x.real, CLOSE);
+            return match real || self.pair_touches(CLOSE) {
+                false => Hidden::Nothing,
+                true if self.h > SHORTEST * self.longest => Hidden::Pair,
+                true => Hidden::Unknown,
+            };
+        }
+        let hides = !fold && self.hides_folds() || self.hides_pairs() || {
+            let touches = || self.touches(|x| x.real, CLEAR) || self.bounces();
+            !explained && self.same_counts() && touches()
+        };
+        if hides { Hidden::Pair } else { Hidden::Nothing }
     }
 
     /// Whether the real eigenvalue nearest to zero, going on as before, would pass zero, and does not:
@@ -99,27 +126,45 @@ impl Stretch<'_> {
         if !self.same_counts() || a.pairs == 0 {
             return false;
         }
-        let near = |x: &State| x.pair.abs() < NEAR * x.frequency;
-        let same = |x: &State, y: &State| {
-            let limit = if near(x) || near(y) { SAME_NEAR } else { SAME_PAIR };
-            let largest = x.frequency.abs().max(y.frequency.abs());
-            (x.frequency - y.frequency).abs() <= limit * largest
-        };
         if !same(a, b) {
             return self.h > 4.0 * SHORT * self.longest && (near(a) || near(b));
         }
-        same(self.before, a) && self.touches(|x| x.pair)
+        self.pair_touches(CLEAR)
     }
 
-    fn touches(&self, f: impl Fn(&State) -> f64) -> bool {
-        let Stretch { before, past, a, b, h, .. } = *self;
-        before.pairs == a.pairs && touches([before, a, b].map(f), past, h)
+    /// Whether one and the same pair touches the axis to a part `clear` of its distance.
+    fn pair_touches(&self, clear: f64) -> bool {
+        let (before, a, b) = (self.before, self.a, self.b);
+        let known = self.same_counts() && a.pairs > 0 && is_damped(a) && is_damped(b);
+        known && same(before, a) && same(a, b) && self.touches(|x| x.pair, clear)
     }
+
+    fn touches(&self, f: impl Fn(&State) -> f64, clear: f64) -> bool {
+        let Stretch { before, past, a, b, h, .. } = *self;
+        before.pairs == a.pairs && touches([before, a, b].map(f), past, h, clear)
+    }
+}
+
+/// Whether the distance of the nearest pair from the axis is more than rounding.
+fn is_damped(x: &State) -> bool {
+    x.pair.abs() > UNDAMPED * x.frequency
+}
+
+/// Whether the nearest pair is near to the axis.
+fn near(x: &State) -> bool {
+    x.pair.abs() < NEAR * x.frequency
+}
+
+/// Whether the nearest pairs may be the same.
+fn same(x: &State, y: &State) -> bool {
+    let limit = if near(x) || near(y) { SAME_NEAR } else { SAME_PAIR };
+    let largest = x.frequency.abs().max(y.frequency.abs());
+    (x.frequency - y.frequency).abs() <= limit * largest
 }
 
 /// Whether the parabola through values at `-past`, 0 and `h` turns near zero or beyond it behind 0
 /// though the values at both ends have one sign.
-fn touches([before, a, b]: [f64; 3], past: f64, h: f64) -> bool {
+fn touches([before, a, b]: [f64; 3], past: f64, h: f64, clear: f64) -> bool {
     let sign = a.signum();
     if !(past > 0.0 && a * b > 0.0 && before.is_finite()) {
         return false;
@@ -134,30 +179,30 @@ fn touches([before, a, b]: [f64; 3], past: f64, h: f64) -> bool {
     let value = sign * (a + 0.5 * slope * turn);
     let error = ERROR * curvature.abs() * h * h;
     let close = turn < FARTHEST * h || b.abs() < NEARLY * a.abs();
-    close && value < CLEAR * a.abs().min(b.abs()) + error
+    close && value < clear * a.abs().min(b.abs()) + error
 }
 
 #[cfg(test)]
 mod tests {
-    use super::touches;
+    use super::{CLEAR, touches};
 
     #[test]
     fn a_parabola_that_dips_below_zero_between_ends_of_one_sign_is_seen() {
         let f = |x: f64| (x - 0.4) * (x - 0.6);
-        assert!(touches([f(-1.0), f(0.0), f(1.0)], 1.0, 1.0));
-        assert!(touches([-f(-0.3), -f(0.0), -f(1.0)], 0.3, 1.0));
+        assert!(touches([f(-1.0), f(0.0), f(1.0)], 1.0, 1.0, CLEAR));
+        assert!(touches([-f(-0.3), -f(0.0), -f(1.0)], 0.3, 1.0, CLEAR));
     }
 
     #[test]
     fn a_dip_just_before_the_end_of_the_step_is_seen_though_the_function_is_no_parabola() {
         let f = |x: f64| ((x - 0.97).powi(2) - 1e-5) * (1.0 + 0.3 * x);
-        assert!(touches([f(-1.0), f(0.0), f(1.0)], 1.0, 1.0));
+        assert!(touches([f(-1.0), f(0.0), f(1.0)], 1.0, 1.0, CLEAR));
     }
 
     #[test]
     fn a_turn_well_clear_of_zero_is_not_suspected() {
         let f = |x: f64| (x - 0.5) * (x - 0.5) + 0.2;
-        assert!(!touches([f(-1.0), f(0.0), f(1.0)], 1.0, 1.0));
-        assert!(!touches([f64::NAN, 1.0, 1.0], 1.0, 1.0));
+        assert!(!touches([f(-1.0), f(0.0), f(1.0)], 1.0, 1.0, CLEAR));
+        assert!(!touches([f64::NAN, 1.0, 1.0], 1.0, 1.0, CLEAR));
     }
 }

@@ -9,7 +9,7 @@ mod root;
 mod watched;
 
 pub(crate) use detect::{Beside, Candidate, Detector, Plateau, Role};
-pub(crate) use extrapolate::Stretch;
+pub(crate) use extrapolate::{Hidden, Stretch};
 pub(crate) use flat::flat_fold;
 pub(crate) use hermite::basis;
 pub(crate) use locate::{Located, bend, interpolate, locate};

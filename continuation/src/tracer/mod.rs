@@ -36,7 +36,7 @@ pub use input::{Progress, TraceError};
 pub(crate) use snapshot::Snapshot;
 
 use crate::branch::{Branch, Doubt, Event, Point, Statistics, Stop, StopReason};
-use crate::events::{Beside, Detector, Plateau, Stretch, Watch};
+use crate::events::{Beside, Detector, Hidden, Plateau, Stretch, Watch};
 use crate::newton::{NewtonSettings, newton};
 use crate::problem::{ParamId, Problem, Stability};
 use crate::settings::{Settings, SettingsError};
@@ -54,6 +54,11 @@ use switching::Departure;
 
 /// Part of the separation on a curve of special points below which two of them meet.
 const MEETING: f64 = 1e-3;
+/// Steps up to this many of the shortest are not divided for pairs of eigenvalues that cross together.
+const FINEST: f64 = 8.0;
+/// What a step leaves open at whose length it is not divided further.
+const TOUCHES: &str = "an eigenvalue comes so close to the imaginary axis that it may have crossed it and come \
+                       back within a step";
 
 /// Traces one branch; yields its points in order, special points included, the start first.
 ///
@@ -363,6 +368,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let first = h * length;
         loop {
             let final_say = h <= self.size.resolution(length);
+            self.detector.set_finest(h <= FINEST * shortest);
             match self.attempt(h, final_say) {
                 Ok(()) => {
                     self.core.statistics.accepted += 1;
@@ -450,9 +456,11 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let (before, a, b) = (&*previous, &*current, &*trial);
         let range = core.weights.parameter;
         let step = Stretch { before, past: self.past, a, b, h, longest, range };
-        if !final_say && step.hides_pair() {
-            return Err(Refusal::Unresolved);
-        }
+        let divisible = !final_say || h > FINEST * self.size.shortest(current.length);
+        let touches = match step.hides_pair() {
+            Hidden::Pair if divisible => return Err(Refusal::Unresolved),
+            hidden => hidden != Hidden::Nothing,
+        };
         detector.detect(current, trial, h, core.weights.parameter, final_say)?;
         let s_trial = self.s + self.metric_distance();
         // before the location, whose result is left in the same work space
@@ -463,7 +471,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             special.retain(|one| one.place.at <= at + 1e-4 * h);
             reason
         });
-        let doubt = self.detector.doubt();
+        let doubt = self.detector.doubt().or(touches.then_some(TOUCHES));
         let (from, to) = (self.current.p, self.trial.p);
         let length = self.trial.length;
         self.accept(h, &special, s_trial, returned)?;
