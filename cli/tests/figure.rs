@@ -40,7 +40,13 @@ fn all_figures_come_with_data_and_claims_with_verdicts() {
         let decided = ["agrees", "disagrees"].contains(&claim["verdict"].as_str().unwrap());
         assert_eq!(decided, claim["tolerance"] != "none", "{claim}");
         assert!(!claim["why"].as_str().unwrap().is_empty(), "{claim}");
+        assert!(["paper", "ours"].contains(&claim["source"].as_str().unwrap()), "{claim}");
     }
+    let shown = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        shown.contains("claims of the paper: ") && shown.contains("ours, no sentence"),
+        "{shown}"
+    );
 }
 
 /// Values known from independent solvers.
@@ -81,12 +87,97 @@ fn measured_values_are_those_of_other_solvers_and_the_page_needs_nothing_else() 
         assert!((ours - known).abs() < tolerance, "{statement}: {ours}");
     }
     assert_eq!(of("around Δ = 52 nm")["verdict"], "agrees");
-    assert_eq!(of("a limit point at d = 0.07")["verdict"], "disagrees");
+    let tolerance = Value::from("±17 % (limit point)");
+    // limit points have one tolerance
+    for statement in ["a limit point at d = 0.07", "… and F = 2.5", "the branch turns down until"]
+    {
+        let claim = of(statement);
+        assert_eq!((&claim["verdict"], &claim["tolerance"]), (&"agrees".into(), &tolerance));
+    }
 
     // a case of a figure can be traced, and varied
     let again = ["trace", "o/cases/fig12-strong.toml", "--elements", "60", "--json", "--quiet"];
     let traced: Value = serde_json::from_slice(&arclen(place.path(), &again).stdout).unwrap();
     assert_eq!(traced["stopped_because"], "target");
+}
+
+/// What rests on stability counts every kind of mode, and every window stands in its row.
+#[test]
+fn claims_say_how_they_are_measured_and_rest_on_all_modes() {
+    let place = tempfile::tempdir().unwrap();
+    let line = "figure 6 10 12 18 --elements 200 --no-pictures --out o";
+    let output = arclen(place.path(), &line.split(' ').collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stdout));
+    let claims = read(&place.path().join("o/claims.json"));
+    let claims = claims["claims"].as_array().unwrap();
+    let rows = |figure: u64, words: &str| -> Vec<(f64, String, String, String)> {
+        let own = claims.iter().filter(|c| c["figure"] == figure);
+        let text = |c: &Value, key: &str| c[key].as_str().unwrap().to_owned();
+        own.filter(|c| c["statement"].as_str().unwrap().contains(words))
+            .map(|c| {
+                let [verdict, source, measured] =
+                    ["verdict", "source", "measured"].map(|key| text(c, key));
+                (c["ours"].as_f64().unwrap(), verdict, source, measured)
+            })
+            .collect()
+    };
+    // (figure, words, number, its tolerance, verdict, source, what stands in the row)
+    for (figure, words, known) in [
+        (
+            12,
+            "expected to become unstable",
+            &[(13.0, 0.1, "agrees", "0.08252 to 0.1117"), (1.0, 1e-12, "agrees", "0.08252")][..],
+        ),
+        (18, "cubic", &[(2.500, 2e-3, "disagrees", "0.2 to 0.38"), (2.718, 2e-3, "agrees", "0.3")]),
+        (
+            6,
+            "Δ^(1/2)",
+            &[
+                (0.693, 2e-3, "disagrees", "of the deformation"),
+                (0.627, 2e-3, "disagrees", "0.01074 R0"),
+                (0.535, 5e-3, "agrees", "0.02344 R0"),
+            ],
+        ),
+        (
+            6,
+            "same order",
+            &[(0.380, 1e-3, "agrees", "= 0.4"), (0.0905, 1e-3, "disagrees", "= 0.244")],
+        ),
+        (
+            10,
+            "2.5 h/R0 (k_b = 3e-5)",
+            &[
+                (3.053, 5e-3, "agrees", "half of its largest"),
+                (3.03, 0.02, "agrees", "strongest curvature"),
+                (2.783, 5e-3, "agrees", "back at 8"),
+            ],
+        ),
+        (10, "entire range", &[(1.675, 1e-3, "disagrees", "0.35")]),
+    ] {
+        let found = rows(figure, words);
+        assert_eq!(found.len(), known.len(), "{words}: {found:?}");
+        for ((ours, verdict, source, measured), (number, by, said, window)) in
+            found.iter().zip(known)
+        {
+            assert!((ours - number).abs() < *by, "{words}: {ours}, {measured}");
+            assert_eq!((&verdict[..], &source[..]), (*said, "paper"), "{words}");
+            assert!(measured.contains(window), "{window}: {measured}");
+        }
+    }
+    let (_, verdict, source, _) = &rows(6, "one stable branch")[0];
+    assert_eq!((&verdict[..], &source[..]), ("disagrees", "ours"));
+
+    // without those modes nothing is known
+    let line = "figure 7 12 --elements 60 --no-pictures --set stability.scan=axisymmetric --out a";
+    let output = arclen(place.path(), &line.split(' ').collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stdout));
+    let claims = read(&place.path().join("a/claims.json"));
+    for words in ["stable throughout", "expected to become unstable", "loses its circular shape"] {
+        let own = claims["claims"].as_array().unwrap().iter();
+        let own: Vec<_> =
+            own.filter(|c| c["statement"].as_str().unwrap().contains(words)).collect();
+        assert!(!own.is_empty() && own.iter().all(|c| c["verdict"] == "cannot-be-decided"));
+    }
 }
 
 /// The figure that is not of the paper: every window of instability, and its ends.

@@ -92,7 +92,7 @@ pub(super) fn jobs(
                     label: curve.label.clone(),
                     contact: contact.clone(),
                     case,
-                    scan: manifest.scans(),
+                    scan: manifest.scans() || curve.stability,
                 }),
                 _ => Err(FigureError::Manifest {
                     figure: manifest.number,

@@ -1,6 +1,6 @@
 //! The files of figures: drawings, pictures, data, cases, claims, and the page.
 
-use super::claims::{Claim, Verdict};
+use super::claims::{Claim, Source, Tally};
 use super::manifest::{STABILITY, stem};
 use super::page::page;
 use super::ring::RingBranch;
@@ -223,14 +223,13 @@ pub(crate) fn summary(computed: &Computed) -> String {
         .map(|f| name(f.manifest.number).to_string().replace('"', ""))
         .collect();
     let mut text = format!("figures {}\n", numbers.join(", "));
-    let count = |verdict| computed.claims.iter().filter(|c| c.verdict == verdict).count();
-    if !computed.claims.is_empty() {
-        text += &format!(
-            "claims: {} agree, {} disagree, {} cannot be decided\n",
-            count(Verdict::Agrees),
-            count(Verdict::Disagrees),
-            count(Verdict::CannotBeDecided)
-        );
+    for (source, whose) in
+        [(Source::Paper, "claims of the paper"), (Source::Ours, "ours, no sentence of the paper")]
+    {
+        let tally = Tally::of(&computed.claims, source);
+        if !tally.is_empty() {
+            text += &format!("{whose}: {tally}\n");
+        }
     }
     for line in &computed.early {
         text += &format!("incomplete: {line}\n");

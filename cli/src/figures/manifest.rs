@@ -36,6 +36,9 @@ pub(crate) struct CurveSpec {
     pub(crate) set: Vec<String>,
     /// For the legend.
     pub(crate) label: String,
+    /// Whether a claim about it rests on modes without its symmetries.
+    #[serde(default)]
+    pub(crate) stability: bool,
 }
 
 /// A panel.

@@ -185,7 +185,11 @@ impl Plan {
         for t in &traced {
             let scanned = t.scanned.as_ref().map(|scanned| scanned.points.len());
             if scanned.is_some_and(|points| points < t.branch.branch.points.len()) {
-                early.push(format!("stability, curve {}: not scanned to its end", t.name));
+                early.push(format!(
+                    "{}, curve {}: stability not scanned to its end",
+                    manifest::stem(t.figure),
+                    t.name
+                ));
             }
         }
         let rings: Vec<RingBranch> = self

@@ -1,7 +1,7 @@
 //! One page with everything: figures, their data, and the claims.
 
 use super::Computed;
-use super::claims::{Claim, Verdict};
+use super::claims::{Claim, Source, Tally, Verdict};
 use super::estimates::EstimateRow;
 use super::files::{WINDOWS, data_name};
 use super::manifest::{STABILITY, stem};
@@ -29,8 +29,8 @@ pub(super) fn page(computed: &Computed, drawings: &[String]) -> String {
     out.push_str("<h1>Compression of coated microbubbles: the figures, computed</h1>\n");
     out.push_str(
         "<p>Figures of Lytra and Pelekasis, <i>Static response of coated microbubbles compressed \
-         between rigid plates</i>, Phys. Fluids 30 (2018), computed by arclen. Solid lines are \
-         stable at fixed plate distance, dashed ones are not, dotted ones are laws. The \
+         between rigid plates</i>, Phys. Fluids 30 (2018), computed by arclen. Dashed lines are \
+         unstable at fixed plate distance to axisymmetric mirror images, dotted ones are laws. The \
          deformation is that of one pole, plate against equator, unless an axis says otherwise; an \
          instrument that closes both plates reads twice as much.</p>\n",
     );
@@ -100,9 +100,19 @@ fn claims(out: &mut String, claims: &[Claim]) {
     if claims.is_empty() {
         return;
     }
-    out.push_str("<section id=\"claims\"><h2>Claims</h2>\n<div class=\"wide\"><table><tr>");
+    out.push_str("<section id=\"claims\"><h2>Claims</h2>\n");
+    let _ = writeln!(
+        out,
+        "<p>Of the paper: {}. <span class=\"ours\">Ours</span>, which no sentence of it makes: {}. \
+         Where the paper does not say how a number is to be taken, each way is a row. Unstable modes \
+         of every kind are the mirror-symmetric axisymmetric ones, those that break the mirror \
+         symmetry, and those with waves around the axis.</p>",
+        Tally::of(claims, Source::Paper),
+        Tally::of(claims, Source::Ours)
+    );
+    out.push_str("<div class=\"wide\"><table><tr>");
     for title in
-        ["Fig.", "The paper says", "Measured here", "Paper", "Here", "Tolerance", "Verdict", "Why"]
+        ["Fig.", "Statement", "Measured here", "Paper", "Here", "Tolerance", "Verdict", "Why"]
     {
         let _ = write!(out, "<th>{title}</th>");
     }
@@ -113,9 +123,14 @@ fn claims(out: &mut String, claims: &[Claim]) {
             Verdict::Disagrees => ("bad", "disagrees"),
             Verdict::CannotBeDecided => ("open", "cannot be decided"),
         };
-        let _ = write!(out, "<tr><td>{}</td>", claim.figure);
+        let _ = write!(out, "<tr><td>{}</td><td>", claim.figure);
+        if claim.source == Source::Ours {
+            out.push_str("<span class=\"ours\">ours:</span> ");
+        }
+        escape(out, claim.statement.trim());
+        out.push_str("</td>");
         let (paper, ours) = (number(claim.paper), number(claim.ours));
-        for text in [&claim.statement, &claim.measured, &paper, &ours, &claim.tolerance] {
+        for text in [&claim.measured, &paper, &ours, &claim.tolerance] {
             out.push_str("<td>");
             escape(out, text.trim());
             out.push_str("</td>");

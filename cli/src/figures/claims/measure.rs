@@ -1,13 +1,17 @@
 //! What is measured on a branch.
 
 use crate::figures::curve::{State, Traced};
-use continuation::{EventKind, Point};
+use continuation::EventKind;
 
 /// Samples along the meridian.
 const SAMPLES: usize = 801;
+/// Half the distance over which a slope at a place is taken, in `R0`.
+const NEAR: f64 = 1e-4;
+/// Half the distance over which a power at a place is taken, as a share of the deformation.
+const AROUND: f64 = 0.03;
 
 /// Points of the branch in compression: deformation and reduced force, from the zero of the force.
-fn compression(traced: &Traced) -> Vec<(f64, f64)> {
+pub(super) fn compression(traced: &Traced) -> Vec<(f64, f64)> {
     let points = &traced.branch.branch.points;
     (0..points.len())
         .map(|i| {
@@ -16,21 +20,6 @@ fn compression(traced: &Traced) -> Vec<(f64, f64)> {
         })
         .filter(|(d, force)| *d >= 0.0 && *force >= 0.0)
         .collect()
-}
-
-/// Deformation and force where the slope has fallen to half of the largest one before.
-pub(super) fn knee(traced: &Traced) -> Option<(f64, f64)> {
-    let points = compression(traced);
-    let mut largest = 0.0_f64;
-    for pair in points.windows(2) {
-        let ((d0, f0), (d1, f1)) = (pair[0], pair[1]);
-        let slope = (f1 - f0) / (d1 - d0);
-        largest = largest.max(slope);
-        if slope < 0.5 * largest {
-            return Some((0.5 * (d0 + d1), 0.5 * (f0 + f1)));
-        }
-    }
-    None
 }
 
 /// Least slope, each over the largest one before it; `to` bounds the deformation.
@@ -57,17 +46,51 @@ pub(super) fn slope(traced: &Traced, from: f64, to: f64) -> Option<f64> {
     Some((force(traced, to)? - force(traced, from)?) / (to - from))
 }
 
+/// Slope `dF̂/dd̂` at the zero of the force: what counts as the linear response.
+fn first_slope(traced: &Traced) -> Option<f64> {
+    let at = |d: f64, pass: i32| Some(traced.state(d, pass)?.observation.force);
+    Some((at(NEAR, 1)? - at(-NEAR, -1)?) / (2.0 * NEAR))
+}
+
 /// Power of the deformation with which the force grows at `d`.
 pub(super) fn power(traced: &Traced, d: f64) -> Option<f64> {
-    let (low, high) = (force(traced, 0.97 * d)?, force(traced, 1.03 * d)?);
-    Some((high / low).ln() / (1.03_f64 / 0.97).ln())
+    let around = [(1.0 - AROUND) * d, (1.0 + AROUND) * d];
+    power_between(around.map(|d| Some((d, force(traced, d)?))))
+}
+
+/// The same of the deformation without a part of it.
+pub(super) fn power_without(
+    traced: &Traced,
+    d: f64,
+    part: impl Fn(f64) -> Option<f64>,
+) -> Option<f64> {
+    let around = [(1.0 - AROUND) * d, (1.0 + AROUND) * d];
+    power_between(around.map(|d| Some((d - part(d)?, force(traced, d)?))))
+}
+
+/// By how much the film is thinner than at the zero of the force, where it is thinnest, in `R0`.
+pub(super) fn film_share(traced: &Traced, d: f64) -> Option<f64> {
+    let thinnest = |d: f64| {
+        let profile = traced.profile(&traced.state(d, 1)?, SAMPLES)?;
+        profile.delta.iter().copied().reduce(f64::min)
+    };
+    Some(thinnest(0.0)? - thinnest(d)?)
+}
+
+/// Force beyond the linear one at a deformation.
+pub(super) fn beyond(traced: &Traced, d: f64) -> Option<f64> {
+    Some(force(traced, d)? - first_slope(traced)? * d)
 }
 
 /// Power of the force beyond the linear one between two deformations.
 pub(super) fn power_beyond(traced: &Traced, from: f64, to: f64) -> Option<f64> {
-    let first = slope(traced, 0.0, 0.02)?;
-    let beyond = |d: f64| Some(force(traced, d)? - first * d);
-    Some((beyond(to)? / beyond(from)?).ln() / (to / from).ln())
+    power_between([from, to].map(|d| Some((d, beyond(traced, d)?))))
+}
+
+/// Power between two places of a curve.
+fn power_between(places: [Option<(f64, f64)>; 2]) -> Option<f64> {
+    let [Some((x0, y0)), Some((x1, y1))] = places else { return None };
+    Some((y1 / y0).ln() / (x1 / x0).ln())
 }
 
 /// Where the slope has become `factor` times the first one.
@@ -118,13 +141,6 @@ pub(super) fn pressure(traced: &Traced, d: f64) -> Option<(f64, f64)> {
 /// A ratio of parts of the energy.
 pub(super) fn energies(traced: &Traced, d: f64, ratio: fn(&State) -> f64) -> Option<f64> {
     Some(ratio(&traced.state(d, 1)?))
-}
-
-/// Most unstable modes among the points that are chosen.
-pub(super) fn unstable(traced: &Traced, chosen: impl Fn(usize, &Point) -> bool) -> Option<f64> {
-    let points = &traced.branch.branch.points;
-    let chosen = points.iter().enumerate().filter(|(i, q)| chosen(*i, q));
-    chosen.filter_map(|(_, q)| q.unstable).max().map(|n| n as f64)
 }
 
 /// Whether the branch was traced to its end.

@@ -1,17 +1,26 @@
 //! Statements of the paper against what was computed.
 //!
 //! The paper's values are quoted; ours are measured on the branches; the verdict follows from both
-//! by the tolerance that stands in the row.
+//! by the tolerance that stands in the row, one for each kind of statement. Where the paper does not
+//! say how a number is to be taken, each way is a row of its own, and the window stands in it.
+//! Statements that the paper does not make are marked as [`Source::Ours`].
 
 mod benchmark;
 mod hard;
+mod knee;
 mod measure;
 mod soft;
+mod stability;
+mod tally;
+mod tolerance;
+
+pub(super) use tally::Tally;
 
 use super::curve::Traced;
 use super::page::short;
 use super::ring::RingBranch;
 use serde::Serialize;
+use tolerance::Kind;
 
 /// What the numbers say of a statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -25,12 +34,24 @@ pub(crate) enum Verdict {
     CannotBeDecided,
 }
 
-/// A statement.
+/// Who makes a statement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Source {
+    /// A sentence of the paper.
+    Paper,
+    /// No sentence of the paper: what its figures show, or what was found on the way.
+    Ours,
+}
+
+/// A statement, and one way to measure it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Claim {
     /// The figure it is about.
     pub(crate) figure: u32,
-    /// What the paper says.
+    /// Who says it.
+    pub(crate) source: Source,
+    /// What is said.
     pub(crate) statement: String,
     /// Its value; none where it gives no number.
     pub(crate) paper: Option<f64>,
@@ -49,23 +70,45 @@ pub(crate) struct Claim {
 /// A statement about one figure, in the making.
 struct Row<'s> {
     figure: u32,
+    source: Source,
     statement: &'s str,
     measured: &'s str,
     why: &'s str,
 }
 
-impl Row<'_> {
-    /// A value of the paper, to a share of itself.
-    fn near(self, paper: f64, ours: Option<f64>, share: f64) -> Claim {
-        let good = ours.map(|x| (x - paper).abs() <= share * paper.abs());
-        let tolerance = format!("±{} %", short(100.0 * share));
-        self.claim(Some(paper), ours, tolerance, good)
+impl<'s> Row<'s> {
+    /// A sentence of the paper, what is measured of it, and what the number means.
+    fn new(figure: u32, statement: &'s str, measured: &'s str, why: &'s str) -> Row<'s> {
+        Row { figure, source: Source::Paper, statement, measured, why }
     }
 
-    /// A value of the paper, to an amount.
-    fn within(self, paper: f64, ours: Option<f64>, amount: f64) -> Claim {
-        let good = ours.map(|x| (x - paper).abs() <= amount);
-        self.claim(Some(paper), ours, format!("±{}", short(amount)), good)
+    /// No sentence of the paper says so.
+    fn ours(self) -> Row<'s> {
+        Row { source: Source::Ours, ..self }
+    }
+
+    /// A value of the paper, to the tolerance of its kind.
+    fn near(self, kind: Kind, paper: f64, ours: Option<f64>) -> Claim {
+        let good = ours.map(|x| kind.tolerance.allows(paper, x));
+        self.claim(Some(paper), ours, kind.to_string(), good)
+    }
+
+    /// One of several powers, to the tolerance of its kind.
+    fn one_of(self, kind: Kind, powers: &[f64], ours: Option<f64>) -> Claim {
+        let good = ours.map(|x| powers.iter().any(|power| kind.tolerance.allows(*power, x)));
+        let words: Vec<String> = powers.iter().map(|power| short(*power)).collect();
+        self.claim(None, ours, format!("{kind} of {}", words.join(" or of ")), good)
+    }
+
+    /// A word of the paper that bounds the number, to the tolerance of its kind.
+    fn bounded(self, kind: Kind, ours: Option<f64>) -> Claim {
+        let good = ours.map(|x| kind.tolerance.allows(1.0, x));
+        self.claim(None, ours, kind.to_string(), good)
+    }
+
+    /// A number that is counted.
+    fn exactly(self, paper: f64, ours: Option<f64>) -> Claim {
+        self.claim(Some(paper), ours, "exactly".to_owned(), ours.map(|x| x == paper))
     }
 
     /// A bound that follows from the statement.
@@ -78,13 +121,7 @@ impl Row<'_> {
         self.claim(None, ours, format!("below {}", short(bound)), ours.map(|x| x < bound))
     }
 
-    /// A range that follows from the statement.
-    fn between(self, low: f64, high: f64, ours: Option<f64>) -> Claim {
-        let good = ours.map(|x| (low..=high).contains(&x));
-        self.claim(None, ours, format!("from {} to {}", short(low), short(high)), good)
-    }
-
-    /// A number that the paper shows but does not say.
+    /// A number that is shown but not said.
     fn open(self, ours: Option<f64>) -> Claim {
         self.claim(None, ours, "none".to_owned(), None)
     }
@@ -103,6 +140,7 @@ impl Row<'_> {
         };
         Claim {
             figure: self.figure,
+            source: self.source,
             statement: self.statement.to_owned(),
             paper,
             ours,
@@ -155,19 +193,23 @@ pub(super) fn of(traced: &[Traced], rings: &[RingBranch]) -> Vec<Claim> {
 
 #[cfg(test)]
 mod tests {
+    use super::tolerance::{ALMOST, FLAT, SLOPE};
     use super::*;
 
     #[test]
     fn verdicts_follow_from_the_tolerance() {
-        let row = || Row { figure: 1, statement: "", measured: "", why: "" };
+        let row = || Row::new(1, "", "", "");
         let verdict = |claim: Claim| claim.verdict;
-        assert_eq!(verdict(row().near(8.0, Some(8.7), 0.1)), Verdict::Agrees);
-        assert_eq!(verdict(row().near(8.0, Some(8.9), 0.1)), Verdict::Disagrees);
-        assert_eq!(verdict(row().near(8.0, Some(f64::NAN), 0.1)), Verdict::Disagrees);
-        assert_eq!(verdict(row().within(0.03, Some(0.0269), 0.005)), Verdict::Agrees);
+        assert_eq!(verdict(row().near(SLOPE, 8.0, Some(8.7))), Verdict::Agrees);
+        assert_eq!(verdict(row().near(SLOPE, 8.0, Some(8.9))), Verdict::Disagrees);
+        assert_eq!(verdict(row().near(SLOPE, 8.0, Some(f64::NAN))), Verdict::Disagrees);
+        assert_eq!(verdict(row().one_of(ALMOST, &[1.0, 2.0], Some(1.45))), Verdict::Agrees);
+        assert_eq!(verdict(row().one_of(ALMOST, &[1.0, 2.0], Some(1.35))), Verdict::Disagrees);
+        assert_eq!(verdict(row().bounded(FLAT, Some(0.02))), Verdict::Disagrees);
+        assert_eq!(verdict(row().exactly(2.0, Some(2.0))), Verdict::Agrees);
         assert_eq!(verdict(row().above(1.0, None)), Verdict::CannotBeDecided);
         assert_eq!(verdict(row().below(1.0, Some(0.5))), Verdict::Agrees);
-        assert_eq!(verdict(row().between(0.0, 1.0, Some(2.0))), Verdict::Disagrees);
         assert_eq!(verdict(row().open(Some(2.0))), Verdict::CannotBeDecided);
+        assert_eq!(row().ours().open(None).source, Source::Ours);
     }
 }
