@@ -14,8 +14,8 @@ use shell_contact::half::HalfMeridian;
 use shell_contact::modes::{AsymmetricModes, Parity, ScanSettings, scan_branch};
 use shell_contact::quadrature::gauss_legendre;
 use shell_contact::two_plates::{
-    Half, Plate, Side, Support, SupportedProblem, TwoPlatesGroups, TwoPlatesProblem,
-    next_unconnected, spring_pairs,
+    ForkError, Half, Plate, Side, Support, SupportedProblem, TwoPlatesGroups, TwoPlatesProblem,
+    follow_asymmetric, leave_symmetry, next_unconnected, spring_pairs,
 };
 use shell_contact::{ContactProblem, Law, trace_contact};
 use std::ops::ControlFlow;
@@ -393,4 +393,90 @@ fn branches_that_no_fork_leads_to_are_found_by_two_springs() {
     let known: Vec<&Branch> = known.into_iter().chain([&branch]).collect();
     let next = next_unconnected(&whole, &symmetric, &known, &[found.z0]);
     assert!(next.is_none_or(|next| (next.plates[0] - found.plates[0]).abs() > 1e-6));
+}
+
+/// Forks of the symmetric branch are left in the half model's terms; the one beside the fold, where
+/// flat and buckled shapes nearly cross, is reached from two springs. Each branch ends at another fork
+/// or at a bound, and none runs into its own mirror image.
+#[test]
+fn every_fork_is_left_or_reached() {
+    let half = contact(100, Law::Hooke, FIG12);
+    let whole = whole(&half);
+    let mut symmetric = symmetric_branch(&half, 1.15, 0.7);
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let scanned = scan_branch(&half, &symmetric, &ScanSettings::default(), go_on).unwrap();
+    let settings =
+        Settings { domain: Some((0.7, 1.15)), max_step: Some(0.01), ..Settings::default() };
+    let watches = [Watch::extremum("force")];
+    let (mut left, mut sharp) = (Vec::new(), Vec::new());
+    for fork in scanned.events.iter().rev().filter(|event| event.n == 0) {
+        let at = fork.after_point + 1;
+        let state = Point { u: fork.u.clone(), p: fork.z0, ..symmetric.points[at].clone() };
+        symmetric.points.insert(at, state);
+        let go_on = &mut |_: &Progress| ControlFlow::Continue(());
+        let (settings, unstable) = (settings.clone(), Some(0));
+        match leave_symmetry(&whole, &symmetric, at, unstable, settings, &watches, go_on) {
+            Ok(branch) => left.push((fork.z0, branch)),
+            Err(error) => {
+                assert_eq!(error, ForkError::TooSharp);
+                sharp.push(fork.z0);
+            }
+        }
+    }
+    assert_eq!((left.len(), sharp.len()), (4, 1));
+    for (z0, branch) in &left {
+        let [first, last] = [&branch.points[0], &branch.points[branch.points.len() - 1]];
+        assert_eq!((first.p, first.unstable), (*z0, Some(0)));
+        match branch.stopped.reason {
+            // the loop between the two deep forks, from either
+            StopReason::Retraced => {
+                let other = if *z0 < 0.8 { 0.821_817 } else { 0.777_923 };
+                near(last.p, other, 1e-6);
+            }
+            StopReason::Domain => assert!(last.p == 0.7 || last.p == 1.15),
+            reason => panic!("{z0}: {reason}"),
+        }
+    }
+    let known: Vec<&Branch> = left.iter().map(|(_, branch)| branch).collect();
+    let found = next_unconnected(&whole, &symmetric, &known, &[sharp[0] + 1e-3]).unwrap();
+    let go_on = &mut |_: &Progress| ControlFlow::Continue(());
+    let branch = follow_asymmetric(&whole, &found.u, found.z0, settings, &watches, go_on).unwrap();
+    // from the bound, where one pole is flat and the other buckled, to the sharp fork
+    let [first, last] = [&branch.points[0], &branch.points[branch.points.len() - 1]];
+    let reasons = (branch.began.as_ref().unwrap().reason, branch.stopped.reason);
+    let (bound, end) = match reasons {
+        (StopReason::Domain, StopReason::Retraced) => (first, last),
+        (StopReason::Retraced, StopReason::Domain) => (last, first),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!((bound.p, bound.unstable), (0.7, Some(0)));
+    near(end.p, sharp[0], 1e-6);
+    let folds: Vec<f64> = branch.events_of(&EventKind::Fold).map(|event| event.p).collect();
+    assert_eq!(folds.len(), 1);
+    near(folds[0], 0.874_23, 1e-4);
+    // one image only: the upper plate is the same one's all along
+    let shift = branch.observables.iter().position(|name| name == "shift").unwrap();
+    let side = bound.observables[shift].signum();
+    assert!(branch.points.iter().all(|point| point.observables[shift] * side > -1e-6));
+    assert!(branch.points.windows(2).all(|pair| pair[0].s < pair[1].s) && first.s == 0.0);
+    for event in &branch.events {
+        assert_eq!(branch.points[event.point].p, event.p);
+    }
+}
+
+/// A point at which no antisymmetric mode turns leads nowhere; nor does one that is not there.
+#[test]
+fn what_is_no_fork_is_refused() {
+    let half = contact(60, Law::Hooke, FIG12);
+    let whole = whole(&half);
+    let symmetric = symmetric_branch(&half, 1.15, 0.95);
+    let leave = |at: usize| {
+        let settings =
+            Settings { domain: Some((0.9, 1.15)), max_step: Some(0.01), ..Settings::default() };
+        let go_on = &mut |_: &Progress| ControlFlow::Continue(());
+        leave_symmetry(&whole, &symmetric, at, None, settings, &[], go_on)
+    };
+    assert_eq!(leave(symmetric.points.len()), Err(ForkError::NoPoint));
+    let last = symmetric.points.len() - 1;
+    assert!(leave(last).is_err(), "{:?}", leave(last).map(|branch| branch.points.len()));
 }

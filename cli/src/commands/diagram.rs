@@ -162,7 +162,7 @@ fn deliver(
             made.attempt(pictures::DIAGRAM, pictures::draw_diagram(result));
         }
     }
-    let complete = result.is_complete();
+    let complete = result.followed;
     let summary = |written: Option<&Path>| diagram_summary(result, written);
     arguments.output.deliver(folder, made, &arguments.case.inputs(), summary, complete)
 }

@@ -30,6 +30,13 @@ pub(crate) enum From {
         /// The parameter's value there.
         parameter: f64,
     },
+    /// At a state found from two states of a symmetric branch in series.
+    Springs {
+        /// The symmetric branch.
+        branch: usize,
+        /// The parameter's value there.
+        parameter: f64,
+    },
 }
 
 impl Serialize for From {
@@ -49,6 +56,13 @@ impl Serialize for From {
                 map.serialize_entry("parameter", parameter)?;
                 map.end()
             }
+            From::Springs { branch, parameter } => {
+                let mut map = serializer.serialize_map(Some(3))?;
+                map.serialize_entry("branch", branch)?;
+                map.serialize_entry("springs", &true)?;
+                map.serialize_entry("parameter", parameter)?;
+                map.end()
+            }
         }
     }
 }
@@ -64,6 +78,25 @@ pub(crate) struct NearRecord {
     pub(crate) gap: f64,
 }
 
+/// What the states of a branch look like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Symmetry {
+    /// They are their own mirror images about the equator.
+    Mirror,
+    /// They are not: the mirror image of the branch is another one, with the same numbers.
+    Asymmetric,
+}
+
+impl Symmetry {
+    /// In words.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Symmetry::Mirror => "symmetric about the equator",
+            Symmetry::Asymmetric => "asymmetric about the equator",
+        }
+    }
+}
+
 /// A branch of a diagram.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BranchRecord {
@@ -73,6 +106,8 @@ pub(crate) struct BranchRecord {
     pub(crate) from: From,
     /// How many branch points lie between it and the first.
     pub(crate) depth: usize,
+    /// What its states look like, where a diagram has several kinds.
+    pub(crate) symmetry: Option<Symmetry>,
     /// Why it ends at its first point, if that is an end.
     pub(crate) began_because: Option<StopReason>,
     /// Its near-bifurcations.
@@ -86,7 +121,13 @@ pub(crate) struct BranchRecord {
 impl BranchRecord {
     /// The file with its points.
     pub(crate) fn csv(&self) -> String {
-        format!("branch-{}.csv", self.id)
+        let kind = if self.is_asymmetric() { "-asymmetric" } else { "" };
+        format!("branch-{}{kind}.csv", self.id)
+    }
+
+    /// Whether its states are not their own mirror images.
+    pub(crate) fn is_asymmetric(&self) -> bool {
+        self.symmetry == Some(Symmetry::Asymmetric)
     }
 }
 
@@ -105,6 +146,8 @@ pub(crate) struct DiagramResult {
     pub(crate) stopped_because: &'static str,
     /// The same in a sentence; may be empty.
     pub(crate) stopped_detail: String,
+    /// Whether all that can be followed was followed to its end.
+    pub(crate) followed: bool,
     /// Jacobian assemblies.
     pub(crate) newton_iterations: usize,
     /// Time spent on branches, in all runs.
@@ -114,11 +157,6 @@ pub(crate) struct DiagramResult {
 }
 
 impl DiagramResult {
-    /// Whether everything that was asked for was computed.
-    pub(crate) fn is_complete(&self) -> bool {
-        self.stopped_because == "complete"
-    }
-
     /// Whether there is anything to draw.
     pub(crate) fn has_curves(&self) -> bool {
         let mut values = self.branches.iter().flat_map(|one| &one.curve.y);
@@ -129,9 +167,11 @@ impl DiagramResult {
         self.branches.iter().map(|one| one.trace.points).sum()
     }
 
-    /// What the stability of all branches was examined for; `None` where that has no meaning.
+    /// What the stability of all branches was examined for, those without mirror symmetry left out;
+    /// `None` where that has no meaning.
     fn stability(&self) -> Option<StabilityRecord> {
-        let records = self.branches.iter().filter_map(|one| one.trace.stability);
+        let own = self.branches.iter().filter(|one| !one.is_asymmetric());
+        let records = own.filter_map(|one| one.trace.stability);
         records.reduce(|all, one| all.and(&one))
     }
 
@@ -186,7 +226,7 @@ struct BranchOf<'a>(&'a BranchRecord);
 
 impl Serialize for BranchOf<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let BranchRecord { id, from, depth, began_because, near, trace, .. } = self.0;
+        let BranchRecord { id, from, depth, symmetry, began_because, near, trace, .. } = self.0;
         let parameter = &trace.parameter;
         let events: Vec<EventOf<'_>> =
             trace.events.iter().map(|event| EventOf { event, parameter }).collect();
@@ -194,6 +234,9 @@ impl Serialize for BranchOf<'_> {
         map.serialize_entry("id", id)?;
         map.serialize_entry("from", from)?;
         map.serialize_entry("depth", depth)?;
+        if let Some(symmetry) = symmetry {
+            map.serialize_entry("symmetry", symmetry.name())?;
+        }
         map.serialize_entry("csv", &self.0.csv())?;
         map.serialize_entry("events", &events)?;
         if !near.is_empty() {
@@ -255,6 +298,7 @@ pub(crate) fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> 
             From::Start => "start".to_owned(),
             From::Switch { branch, event } => format!("{branch}, event {event}"),
             From::Deflation { branch, .. } => format!("beside {branch}"),
+            From::Springs { branch, .. } => format!("two states of {branch}"),
         };
         let (low, high) = range(&one.curve.x);
         let mut ends = one.trace.stopped_because.to_string();
@@ -262,7 +306,7 @@ pub(crate) fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> 
             ends = format!("{began}, {ends}");
         }
         rows.push(vec![
-            one.id.to_string(),
+            if one.is_asymmetric() { format!("{} asymmetric", one.id) } else { one.id.to_string() },
             from,
             one.trace.points.to_string(),
             format!("{low} to {high}"),
@@ -276,6 +320,10 @@ pub(crate) fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> 
     }
     if let Some(resolution) = result.resolution() {
         out.push_str(&resolution.text());
+    }
+    if let Some(one) = result.branches.iter().find(|one| one.is_asymmetric()) {
+        let text = one.trace.stability.map(|stability| stability.text()).unwrap_or_default();
+        let _ = write!(out, "asymmetric about the equator, one of each mirror pair: {text}");
     }
     out.push('\n');
     out.push_str(&nearly(result));

@@ -21,7 +21,7 @@ pub(crate) mod tests;
 pub(crate) use checkpoint::Checkpoint;
 pub(crate) use cycle::{CycleResult, FoldRecord, JumpRecord, PathRow, ReportedCycle};
 pub(crate) use cycle::{StretchRecord, Way, cycle_json, cycle_summary, cycle_table};
-pub(crate) use diagram::{BranchRecord, DiagramResult, From, NearRecord};
+pub(crate) use diagram::{BranchRecord, DiagramResult, From, NearRecord, Symmetry};
 pub(crate) use diagram::{diagram_json, diagram_summary};
 pub(crate) use events::events_json;
 pub(crate) use folder::Folder;

@@ -31,30 +31,51 @@ pub(super) fn diagram(title: &str, x: &str, y: &str, curve: &Curve) -> Result<St
     chart(title, x, y, std::slice::from_ref(curve)).svg()
 }
 
-/// Branches of a diagram, each with its depth, which gives its colour.
+/// What gives a branch of a diagram its colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Level {
+    /// Branch points between it and the first branch.
+    Depth(usize),
+    /// States that are not their own mirror images.
+    Asymmetric,
+}
+
+/// Branches of a diagram.
 pub(super) fn branches(
     title: &str,
     x: &str,
     y: &str,
-    curves: &[(usize, &Curve)],
+    curves: &[(Level, &Curve)],
 ) -> Result<String, DrawError> {
     let all: Vec<Curve> = curves.iter().map(|(_, curve)| (*curve).clone()).collect();
     let Chart { x, y, marks, legend, .. } = chart(title, x, y, &all);
     let markers = legend.into_iter().filter(|entry| matches!(entry, Entry::Marker { .. }));
     let mut lines = Vec::new();
     let mut entries = Vec::new();
-    let deepest = curves.iter().map(|(depth, _)| *depth).max().unwrap_or(0);
-    for level in 0..=deepest {
-        let color = of_state(level);
-        let here = curves.iter().filter(|(depth, _)| *depth == level);
+    let mut levels: Vec<Level> = curves.iter().map(|(level, _)| *level).collect();
+    levels.sort_unstable();
+    levels.dedup();
+    for level in &levels {
+        let color = match level {
+            Level::Depth(depth) => of_state(*depth),
+            Level::Asymmetric => of_state(levels.len() - 1),
+        };
+        let here = curves.iter().filter(|(own, _)| own == level);
         // the first branch on top
         let drawn = here.flat_map(|(_, curve)| curve_lines(curve, color, (x.unit, y.unit)));
         lines.splice(0..0, drawn);
-        if deepest > 0 {
-            let label =
-                if level == 0 { "first branch".to_owned() } else { format!("depth {level}") };
+        if levels.len() > 1 {
+            let label = match level {
+                Level::Depth(0) => "first branch".to_owned(),
+                Level::Depth(depth) => format!("depth {depth}"),
+                Level::Asymmetric => "asymmetric about the equator".to_owned(),
+            };
             entries.push(Entry::Line { color, stroke: Stroke::Solid, label });
         }
+    }
+    // of states without mirror symmetry fewer modes are known than of the others
+    if levels.contains(&Level::Asymmetric) && levels.len() > 1 {
+        entries.push(Entry::Note { label: "(its modes cos nφ not examined)".to_owned() });
     }
     entries.extend(stability_entries(&all, FAINT));
     entries.extend(markers);

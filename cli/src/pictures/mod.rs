@@ -27,7 +27,8 @@ pub(crate) use sheet::{
     BOLD, FAMILY, FONT, Ink, Panel, PanelLine, Pen, PngError, Sheet, escape, png,
 };
 
-use crate::output::{DiagramResult, Pictures};
+use crate::output::{BranchRecord, DiagramResult, Pictures};
+use draw::Level;
 
 /// Names of all pictures that a trace may write.
 pub(crate) const NAMES: [&str; 6] = [
@@ -47,8 +48,12 @@ pub(crate) const DIAGRAM: &str = "diagram.svg";
 /// # Errors
 /// When the drawing library fails.
 pub(crate) fn draw_diagram(result: &DiagramResult) -> Result<String, DrawError> {
-    let curves: Vec<(usize, &Curve)> =
-        result.branches.iter().map(|branch| (branch.depth, &branch.curve)).collect();
+    let level = |branch: &BranchRecord| match branch.is_asymmetric() {
+        true => Level::Asymmetric,
+        false => Level::Depth(branch.depth),
+    };
+    let curves: Vec<(Level, &Curve)> =
+        result.branches.iter().map(|branch| (level(branch), &branch.curve)).collect();
     let (x, y) = &result.axes;
     draw::branches(&result.case, x, y, &curves)
 }

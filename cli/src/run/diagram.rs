@@ -2,9 +2,9 @@
 
 use super::stability::Stability;
 use super::two_plates::{BetweenPlates, WithPlates};
-use super::{RunError, contact, general, ring_load, stability, states, two_plates};
-use crate::case::{ProblemCase, ResolvedCase};
-use crate::output::{BranchRecord, DiagramResult, From, NearRecord, TraceResult};
+use super::{RunError, asymmetric, contact, general, ring_load, states, two_plates};
+use crate::case::{ProblemCase, ResolvedCase, StabilityCase};
+use crate::output::{BranchRecord, DiagramResult, From, NearRecord, Symmetry, TraceResult};
 use crate::pictures::{Curve, Mark};
 use continuation::diagram::{
     Diagram, DiagramBranch, DiagramError, DiagramSettings, DiagramStop, Explorer, Origin, Search,
@@ -170,8 +170,11 @@ pub(crate) fn run_diagram(
             let points = diagram.branches.iter().map(|one| one.branch.points.len()).sum();
             let mut waiting = diagram.branches.len();
             let done = diagram.branches.len();
+            let depths: Vec<usize> = diagram.branches.iter().map(|one| one.depth).collect();
+            let mut symmetric = asymmetric::Symmetric::default();
+            let mut waves = 0;
             let axes = ("plate distance z₀/R₀", "force F/√(χ k_b)");
-            let explored = result(case, diagram, seconds, axes, &mut |branch| {
+            let mut explored = result(case, diagram, seconds, axes, &mut |branch| {
                 let mut traced = ContactBranch::new(branch, zero);
                 zero = traced.zero_force;
                 waiting -= 1;
@@ -179,12 +182,30 @@ pub(crate) fn run_diagram(
                     observer(DiagramProgress { branches: done - waiting, waiting, branch })
                 };
                 let stability = Stability::of(case, &problem, &mut traced, scan);
+                let id = done - 1 - waiting;
+                let forks = stability.forks(&traced.branch);
+                symmetric.add(id, depths[id], &traced.branch, &forks);
+                waves += stability.waves();
                 let (mut trace, curve) = contact::on_diagram(case, &problem, &traced, &stability);
                 if reported {
                     trace.pictures.states = states::of_contact(&problem, &traced.branch, points);
                 }
                 Presented { trace, curve, stability }
             });
+            if explored.branches.len() > 0 && explored.stopped_because != "interrupted" {
+                for one in &mut explored.branches {
+                    one.symmetry = Some(Symmetry::Mirror);
+                }
+                match case.stability {
+                    StabilityCase::Full { .. } => {
+                        let found = asymmetric::follow(case, contact, zero, symmetric, observer)?;
+                        with_asymmetric(&mut explored, found, waves);
+                    }
+                    StabilityCase::Axisymmetric => {
+                        explored.stopped_detail += NOT_EXAMINED;
+                    }
+                }
+            }
             let seconds = explored.seconds + scanning.elapsed().as_secs_f64();
             Ok(DiagramResult { seconds, ..explored })
         }
@@ -322,6 +343,7 @@ fn result(
             id: one.id,
             from,
             depth: one.depth,
+            symmetry: None,
             began_because: began,
             near,
             trace,
@@ -329,7 +351,6 @@ fn result(
         }
     });
     let mut branches: Vec<BranchRecord> = branches.collect();
-    let stopped_detail = stopped_detail + &left_alone(&branches);
     let renumbered = |branch: usize, event: usize| {
         let scan = scans.iter().find(|(id, _)| *id == branch);
         scan.map_or(event, |(_, stability)| stability.renumbered(event))
@@ -348,6 +369,7 @@ fn result(
         parameter,
         branches,
         joints,
+        followed: stopped_because == "complete",
         stopped_because,
         stopped_detail,
         newton_iterations: statistics.newton_iterations,
@@ -356,14 +378,51 @@ fn result(
     }
 }
 
-/// What is known to leave the branches and is followed by none: states without their symmetry.
-fn left_alone(branches: &[BranchRecord]) -> String {
-    let events = branches.iter().flat_map(|one| &one.trace.events);
-    match events.filter(|event| event.kind == stability::KIND).count() {
-        0 => String::new(),
-        1 => "; states without symmetry, which leave at one point, are not followed".to_owned(),
-        n => format!("; states without symmetry, which leave at {n} points, are not followed"),
+/// What `scan = "axisymmetric"` leaves out.
+const NOT_EXAMINED: &str = "; modes without the symmetries of a branch were not examined, and no branch \
+                            without mirror symmetry was followed";
+
+/// Adds the branches without mirror symmetry, and says what is known and not followed: `waves` special
+/// points lead to states that are not axisymmetric.
+fn with_asymmetric(diagram: &mut DiagramResult, found: asymmetric::Asymmetric, waves: usize) {
+    let points = |n: usize| if n == 1 { "one point".to_owned() } else { format!("{n} points") };
+    let mut detail = String::new();
+    if found.left_out > 0 {
+        detail += &format!(
+            "; at {} where mirror symmetry is lost no branch was followed",
+            points(found.left_out)
+        );
     }
+    if found.further > 0 {
+        detail += &format!(
+            "; what leaves branches without mirror symmetry at {} is not followed",
+            points(found.further)
+        );
+    }
+    match found.unfinished {
+        0 => {}
+        1 => detail += "; one branch without mirror symmetry ended early; see its own",
+        n => detail += &format!("; {n} branches without mirror symmetry ended early; see theirs"),
+    }
+    if found.full {
+        detail += "; the limit of branches was reached";
+    }
+    diagram.followed &= detail.is_empty() && !found.interrupted;
+    if waves > 0 {
+        detail += &format!(
+            "; states with waves around the axis, which leave at {}, are not followed",
+            points(waves)
+        );
+    }
+    diagram.stopped_detail += &detail;
+    if found.interrupted {
+        diagram.stopped_because = "interrupted";
+    } else if !detail.is_empty() && diagram.stopped_because == "complete" {
+        diagram.stopped_because = "incomplete";
+    }
+    diagram.newton_iterations += found.newton_iterations;
+    diagram.branches.extend(found.branches);
+    diagram.joints.extend(found.joints);
 }
 
 /// Why a diagram ended, in a word and a sentence.

@@ -1,6 +1,7 @@
 //! The seam between the command line and the solvers: a checked case goes in, plain numbers come
 //! out.
 
+mod asymmetric;
 mod contact;
 mod cycle;
 mod diagram;

@@ -27,6 +27,10 @@ pub(super) struct Stability {
 }
 
 impl Stability {
+    /// Names of its columns.
+    pub(super) const NAMES: [&str; 4] =
+        ["unstable_antisymmetric", "unstable_modes", "first_n", "stable"];
+
     /// Scans a traced branch if the case asks for it, and puts the special points found among its
     /// own. Under a device that is no grip they are counted, not located.
     pub(super) fn of(
@@ -64,8 +68,7 @@ impl Stability {
 
     /// Names of the columns.
     pub(super) fn titles(&self) -> Vec<String> {
-        let names = ["unstable_antisymmetric", "unstable_modes", "first_n", "stable"];
-        if self.full { names.map(str::to_owned).to_vec() } else { Vec::new() }
+        if self.full { Self::NAMES.map(str::to_owned).to_vec() } else { Vec::new() }
     }
 
     /// Cells of a point.
@@ -113,6 +116,17 @@ impl Stability {
         let own = |e: &&Event| e.kind == EventKind::Named(KIND.to_owned());
         own(&branch.events.get(event)?).then_some(())?;
         self.modes.get(branch.events[..event].iter().filter(own).count()).copied()
+    }
+
+    /// The special points at which the mirror symmetry is lost or regained.
+    pub(super) fn forks(&self, branch: &Branch) -> Vec<usize> {
+        let is_fork = |event: &usize| self.mode(branch, *event).is_some_and(|mode| mode.n == 0);
+        (0..branch.events.len()).filter(is_fork).collect()
+    }
+
+    /// Number of special points at which modes with waves around the axis turn.
+    pub(super) fn waves(&self) -> usize {
+        self.modes.iter().filter(|mode| mode.n > 0).count()
     }
 
     /// What was looked at.

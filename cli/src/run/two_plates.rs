@@ -5,7 +5,7 @@ use super::form::{StabilityColumns, certified};
 use super::stability::Stability;
 use super::{Observer, RunError, listen};
 use crate::case::{PlateCase, ResolvedCase, TwoPlatesCase};
-use crate::output::{ContactRow, EventRecord, Pictures, StabilityRecord, Table, TraceResult};
+use crate::output::{Cell, ContactRow, EventRecord, Pictures, StabilityRecord, Table, TraceResult};
 use crate::pictures::{self, Curve, Profile, Shape};
 use continuation::{Branch, EvalError, Problem, Tracer};
 use shell_contact::two_plates::{
@@ -134,6 +134,16 @@ pub(super) fn settings(case: &ResolvedCase, name: &str) -> continuation::Setting
 
 /// A traced branch as plain numbers, without pictures.
 pub(super) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) -> TraceResult {
+    tabulated(case, traced, seconds, false)
+}
+
+/// The same; `beside` symmetric branches also with the columns that those have.
+fn tabulated(
+    case: &ResolvedCase,
+    traced: &ContactBranch,
+    seconds: f64,
+    beside: bool,
+) -> TraceResult {
     let branch = &traced.branch;
     let stability = StabilityColumns::of(branch);
     let loaded = branch.parameter != "z0";
@@ -141,12 +151,18 @@ pub(super) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) 
     let mut table = Table::contact()
         .and(OWN.map(str::to_owned).to_vec())
         .and(base.into_iter().collect())
-        .and(stability.titles());
+        .and(stability.titles())
+        .and(if beside { Stability::NAMES.map(str::to_owned).to_vec() } else { Vec::new() });
     for (index, point) in branch.points.iter().enumerate() {
         let mut cells = row(traced, index, point).cells();
         cells.extend(OWN.map(|name| observed(branch, index, name).into()));
         cells.extend(loaded.then(|| point.p.into()));
         cells.extend(stability.cells(point));
+        if beside {
+            // modes with waves are not counted here: what is not unstable may be
+            let word = if point.unstable.is_some_and(|n| n > 0) { "no" } else { "unknown" };
+            cells.extend([Cell::Empty, Cell::Empty, Cell::Empty, word.into()]);
+        }
         table.push(cells);
     }
     let events = branch.events.iter().map(|event| {
@@ -180,6 +196,15 @@ fn observed(branch: &Branch, index: usize, name: &str) -> f64 {
 pub(super) fn on_diagram(case: &ResolvedCase, traced: &ContactBranch) -> (TraceResult, Curve) {
     let curve = force_over(traced, &rows(traced), &|row| row.z0);
     (result(case, traced, 0.0), curve)
+}
+
+/// A branch without mirror symmetry in the diagram of a contact case.
+pub(super) fn beside_symmetric(
+    case: &ResolvedCase,
+    traced: &ContactBranch,
+) -> (TraceResult, Curve) {
+    let curve = force_over(traced, &rows(traced), &|row| row.z0);
+    (tabulated(case, traced, 0.0, true), curve)
 }
 
 fn rows(traced: &ContactBranch) -> Vec<ContactRow> {

@@ -44,12 +44,14 @@
 #[cfg(test)]
 mod certify;
 mod evaluate;
+mod fork;
 mod half;
 mod observe;
 mod pairs;
 mod search;
 mod supported;
 
+pub use fork::{ForkError, follow_asymmetric, leave_symmetry};
 pub use half::{Half, Side};
 pub use observe::{NAMES, TwoPlatesObservation};
 pub use pairs::{SpringPair, spring_pairs};

@@ -8,7 +8,7 @@ use continuation::{Branch, NewtonSettings, Problem, newton};
 /// mirror image, are the same: Newton's method leaves 1e-9 of it, other states are tenths away.
 const SAME: f64 = 1e-3;
 /// What sets a state apart from its mirror image, in the metric, where it is its own.
-const SYMMETRIC: f64 = 1e-6;
+pub(super) const SYMMETRIC: f64 = 1e-6;
 
 /// An asymmetric state on no known branch.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +62,7 @@ pub fn next_unconnected<T: Potential, B: Potential>(
 }
 
 /// Length of the difference of two states in the metric.
-fn distance<P: Problem>(problem: &P, a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn distance<P: Problem>(problem: &P, a: &[f64], b: &[f64]) -> f64 {
     let d: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
     let mut y = vec![0.0; d.len()];
     problem.metric(&d, &mut y);
