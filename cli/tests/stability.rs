@@ -220,8 +220,8 @@ fn a_diagram_counts_what_breaks_symmetry_on_every_branch() {
     assert_eq!(diagram["stability"]["certain"], true);
     for branch in diagram["branches"].as_array().unwrap() {
         if branch["symmetry"] == "asymmetric about the equator" {
-            // both parities are among the branch's own; waves are not counted, and this is said
-            assert_eq!(branch["stability"]["scan"], "axisymmetric");
+            // both parities are among the branch's own; waves are counted, and not located
+            assert_eq!(branch["stability"]["scan"], "full");
             assert_eq!(branch["stability"]["parities"].as_array().unwrap().len(), 2);
             continue;
         }

@@ -11,7 +11,7 @@ use continuation::{
     Tracer, Watch, both_ways, newton,
 };
 use shell_contact::half::HalfMeridian;
-use shell_contact::modes::{AsymmetricModes, Parity, ScanSettings, scan_branch};
+use shell_contact::modes::{AsymmetricModes, Parity, ScanSettings, WholeModes, scan_branch};
 use shell_contact::quadrature::gauss_legendre;
 use shell_contact::two_plates::{
     ForkError, Half, Plate, Side, Support, SupportedProblem, TwoPlatesGroups, TwoPlatesProblem,
@@ -479,4 +479,58 @@ fn what_is_no_fork_is_refused() {
     assert_eq!(leave(symmetric.points.len()), Err(ForkError::NoPoint));
     let last = symmetric.points.len() - 1;
     assert!(leave(last).is_err(), "{:?}", leave(last).map(|branch| branch.points.len()));
+}
+
+/// About mirror images the whole meridian has the modes of both parities, for every number of waves.
+#[test]
+fn modes_of_mirror_images_are_those_of_both_parities() {
+    for (law, d, start) in [(Law::Hooke, FIG12, 1.15), (MOONEY, FIG16, 1.3)] {
+        let half = contact(60, law, d);
+        let whole = whole(&half);
+        let (mut halves, mut modes) =
+            (AsymmetricModes::new(half.mesh()), WholeModes::new(half.mesh()));
+        let mut seen = 0;
+        for point in symmetric_branch(&half, start, 0.7).points.iter().step_by(5) {
+            halves.assemble(&half, &point.u, &half.parameters_at(point.p)).unwrap();
+            let u = whole.joined(&point.u, &point.u, 0.0);
+            modes.assemble(&whole, &u, &whole.parameters_at(point.p)).unwrap();
+            near(modes.wave_bound(), halves.wave_bound(), 1e-9);
+            let (one, two) = (halves.scan(40), modes.scan(40));
+            assert_eq!((one.n_max, one.first_n, one.modes), (two.n_max, two.first_n, two.modes));
+            assert_eq!(one.certain, two.certain, "at {}", point.p);
+            for (one, two) in one.by_wave.iter().zip(&two.by_wave) {
+                assert_eq!(one[0].negative + one[1].negative, two.negative, "at {}", point.p);
+            }
+            seen += two.modes;
+        }
+        // the hard shell loses its circular shape, the soft one never
+        assert_eq!(seen > 20, law == Law::Hooke, "{seen}");
+    }
+}
+
+/// Modes with waves about asymmetric states, against the independent solver; a mirror image has as
+/// many.
+#[test]
+fn modes_of_asymmetric_states_are_those_of_the_independent_solver() {
+    let half = contact(200, Law::Hooke, FIG12);
+    let whole = whole(&half);
+    let mut modes = WholeModes::new(half.mesh());
+    for (z0, known) in [
+        (0.815, [2, 2, 2, 1, 1, 1, 1, 1, 0]),
+        (0.8, [2, 2, 2, 1, 1, 1, 1, 1, 0]),
+        (0.79, [2, 2, 2, 2, 1, 1, 1, 1, 1]),
+    ] {
+        let u = from_fork(&whole, 0.775, z0);
+        for u in [whole.reflected(&u), u] {
+            modes.assemble(&whole, &u, &whole.parameters_at(z0)).unwrap();
+            let scan = modes.scan(40);
+            let counts: Vec<usize> = scan.by_wave.iter().map(|count| count.negative).collect();
+            assert_eq!(counts[1..10], known, "at {z0}: {counts:?}");
+            assert!(
+                scan.certain
+                    && scan.first_n == Some(counts.iter().position(|n| *n > 0).unwrap() + 1)
+            );
+            assert_eq!(scan.modes, counts.iter().sum::<usize>());
+        }
+    }
 }

@@ -321,8 +321,10 @@ pub(crate) fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> 
     if let Some(resolution) = result.resolution() {
         out.push_str(&resolution.text());
     }
-    if let Some(one) = result.branches.iter().find(|one| one.is_asymmetric()) {
-        let text = one.trace.stability.map(|stability| stability.text()).unwrap_or_default();
+    let others = result.branches.iter().filter(|one| one.is_asymmetric());
+    let others = others.filter_map(|one| one.trace.stability).reduce(|all, one| all.and(&one));
+    if let Some(stability) = others {
+        let text = stability.text();
         let _ = write!(out, "asymmetric about the equator, one of each mirror pair: {text}");
     }
     out.push('\n');

@@ -73,10 +73,6 @@ pub(super) fn branches(
             entries.push(Entry::Line { color, stroke: Stroke::Solid, label });
         }
     }
-    // of states without mirror symmetry fewer modes are known than of the others
-    if levels.contains(&Level::Asymmetric) && levels.len() > 1 {
-        entries.push(Entry::Note { label: "(its modes cos nφ not examined)".to_owned() });
-    }
     entries.extend(stability_entries(&all, FAINT));
     entries.extend(markers);
     Chart { title: shown(title), x, y, lines, marks, legend: entries, size: WIDE }.svg()

@@ -6,6 +6,7 @@
 //! which have the same numbers, one is followed.
 
 use super::diagram::DiagramProgress;
+use super::waves::Waves;
 use super::{Progress, RunError, contact, two_plates};
 use crate::case::{ContactCase, ResolvedCase};
 use crate::output::{BranchRecord, From, Symmetry, TraceResult};
@@ -58,6 +59,8 @@ pub(super) struct Asymmetric {
     pub(super) unfinished: usize,
     /// Other branch points on them, which nothing follows.
     pub(super) further: usize,
+    /// Changes of counts of modes with waves along them.
+    pub(super) waves: usize,
     /// Whether as many branches as the case allows were followed.
     pub(super) full: bool,
     pub(super) interrupted: bool,
@@ -252,7 +255,18 @@ impl Search<'_, '_> {
         self.out.further += inner.filter(|event| event.point > 0 && event.point < last).count();
         let began = branch.began.as_ref().map(|stop| stop.reason);
         let traced = ContactBranch::new(branch.clone(), self.zero_force);
-        let (trace, curve): (TraceResult, Curve) = two_plates::beside_symmetric(self.case, &traced);
+        let done = self.next_id();
+        let observer = &mut *self.observer;
+        let mut stopped = false;
+        let waves = Waves::of(self.case, self.problem, &branch, &mut |branch| {
+            let wish = observer(DiagramProgress { branches: done, waiting: 0, branch });
+            stopped |= wish.is_break();
+            wish
+        });
+        self.out.interrupted |= stopped;
+        self.out.waves += waves.record().not_located;
+        let (trace, curve): (TraceResult, Curve) =
+            two_plates::beside_symmetric(self.case, &traced, &waves);
         self.out.branches.push(BranchRecord {
             id,
             from,

@@ -385,6 +385,7 @@ const NOT_EXAMINED: &str = "; modes without the symmetries of a branch were not 
 /// Adds the branches without mirror symmetry, and says what is known and not followed: `waves` special
 /// points lead to states that are not axisymmetric.
 fn with_asymmetric(diagram: &mut DiagramResult, found: asymmetric::Asymmetric, waves: usize) {
+    let waves = waves + found.waves;
     let points = |n: usize| if n == 1 { "one point".to_owned() } else { format!("{n} points") };
     let mut detail = String::new();
     if found.left_out > 0 {

@@ -3,9 +3,10 @@
 use super::contact::{SAMPLES, drawn, event_record, loaded_path, no_start, path, row};
 use super::form::{StabilityColumns, certified};
 use super::stability::Stability;
+use super::waves::Waves;
 use super::{Observer, RunError, listen};
 use crate::case::{PlateCase, ResolvedCase, TwoPlatesCase};
-use crate::output::{Cell, ContactRow, EventRecord, Pictures, StabilityRecord, Table, TraceResult};
+use crate::output::{ContactRow, EventRecord, Pictures, StabilityRecord, Table, TraceResult};
 use crate::pictures::{self, Curve, Profile, Shape};
 use continuation::{Branch, EvalError, Problem, Tracer};
 use shell_contact::two_plates::{
@@ -134,15 +135,15 @@ pub(super) fn settings(case: &ResolvedCase, name: &str) -> continuation::Setting
 
 /// A traced branch as plain numbers, without pictures.
 pub(super) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) -> TraceResult {
-    tabulated(case, traced, seconds, false)
+    tabulated(case, traced, seconds, None)
 }
 
-/// The same; `beside` symmetric branches also with the columns that those have.
+/// The same; beside symmetric branches also with the columns that those have, of modes with `waves`.
 fn tabulated(
     case: &ResolvedCase,
     traced: &ContactBranch,
     seconds: f64,
-    beside: bool,
+    waves: Option<&Waves>,
 ) -> TraceResult {
     let branch = &traced.branch;
     let stability = StabilityColumns::of(branch);
@@ -152,23 +153,20 @@ fn tabulated(
         .and(OWN.map(str::to_owned).to_vec())
         .and(base.into_iter().collect())
         .and(stability.titles())
-        .and(if beside { Stability::NAMES.map(str::to_owned).to_vec() } else { Vec::new() });
+        .and(waves.map_or(Vec::new(), |_| Stability::NAMES.map(str::to_owned).to_vec()));
     for (index, point) in branch.points.iter().enumerate() {
         let mut cells = row(traced, index, point).cells();
         cells.extend(OWN.map(|name| observed(branch, index, name).into()));
         cells.extend(loaded.then(|| point.p.into()));
         cells.extend(stability.cells(point));
-        if beside {
-            // modes with waves are not counted here: what is not unstable may be
-            let word = if point.unstable.is_some_and(|n| n > 0) { "no" } else { "unknown" };
-            cells.extend([Cell::Empty, Cell::Empty, Cell::Empty, word.into()]);
-        }
+        cells.extend(waves.into_iter().flat_map(|waves| waves.cells(index, point)));
         table.push(cells);
     }
     let events = branch.events.iter().map(|event| {
         let observables = vec![("shift".to_owned(), observed(branch, event.point, "shift"))];
         EventRecord { observables, ..event_record(traced, event, loaded) }
     });
+    let own = StabilityRecord { both_parities: true, ..StabilityRecord::default() };
     TraceResult {
         case: case.name.clone(),
         parameter: branch.parameter.clone(),
@@ -182,7 +180,7 @@ fn tabulated(
         newton_iterations: branch.statistics.newton_iterations,
         seconds,
         maxwell: None,
-        stability: Some(StabilityRecord { both_parities: true, ..StabilityRecord::default() }),
+        stability: Some(waves.map_or(own, Waves::record)),
         pictures: Pictures::default(),
     }
 }
@@ -202,9 +200,14 @@ pub(super) fn on_diagram(case: &ResolvedCase, traced: &ContactBranch) -> (TraceR
 pub(super) fn beside_symmetric(
     case: &ResolvedCase,
     traced: &ContactBranch,
+    waves: &Waves,
 ) -> (TraceResult, Curve) {
-    let curve = force_over(traced, &rows(traced), &|row| row.z0);
-    (tabulated(case, traced, 0.0, true), curve)
+    let curve = Curve {
+        asymmetric: waves.unstable(),
+        examined: waves.examined(),
+        ..force_over(traced, &rows(traced), &|row| row.z0)
+    };
+    (tabulated(case, traced, 0.0, Some(waves)), curve)
 }
 
 fn rows(traced: &ContactBranch) -> Vec<ContactRow> {

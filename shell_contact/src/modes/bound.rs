@@ -9,15 +9,15 @@
 use crate::density::Coefficients;
 use crate::energy;
 use crate::film::Potential;
+use crate::half::HalfMeridian;
 use crate::membrane::Membrane;
-use crate::meridian::Mesh;
 use crate::scalar::{Lanes, Scalar, WIDTH};
 use continuation::EvalError;
 use std::cell::Cell;
 
 /// The largest such `n` over the meridian.
 pub(super) fn largest_wave<L: Membrane, F: Potential>(
-    mesh: &Mesh,
+    mesh: &impl HalfMeridian,
     u: &[f64],
     law: &L,
     film: &F,

@@ -9,6 +9,7 @@ use super::density::{POWERS, second_variation};
 use super::ends::{Ends, FIELDS, HALF_BANDWIDTH, Slot};
 use crate::density::{Coefficients, Site};
 use crate::film::Potential;
+use crate::half::HalfMeridian;
 use crate::membrane::Membrane;
 use crate::meridian::{Cell, Mesh};
 use crate::scalar::Lanes;
@@ -29,7 +30,7 @@ pub(super) const ROWS: usize = HALF_BANDWIDTH + 1;
 pub(super) type Column = [f64; ROWS];
 
 /// Elements next to the pole that its conditions reach.
-const AT_POLE: usize = 3;
+pub(super) const AT_POLE: usize = 3;
 
 /// Elements next to the equator that its conditions reach.
 pub(super) const AT_EQUATOR: usize = 2;
@@ -46,16 +47,17 @@ pub(super) struct Elements {
 
 /// The blocks of an element; those of a field with itself by their upper triangle.
 #[derive(Clone, Debug)]
-struct Element {
+pub(super) struct Element {
     even: [[Block<f64>; 4]; 3],
     odd: [[Block<f64>; 2]; 2],
 }
 
 impl Element {
-    const ZERO: Element = Element { even: [[[[0.0; 4]; 4]; 4]; 3], odd: [[[[0.0; 4]; 4]; 2]; 2] };
+    pub(super) const ZERO: Element =
+        Element { even: [[[[0.0; 4]; 4]; 4]; 3], odd: [[[[0.0; 4]; 4]; 2]; 2] };
 
     /// The 12×12 matrix for `n`, index `3j + f`.
-    fn at(&self, n: f64) -> [[f64; 12]; 12] {
+    pub(super) fn at(&self, n: f64) -> [[f64; 12]; 12] {
         let mut out = [[0.0; 12]; 12];
         let n2 = n * n;
         let even = [1.0, n2, n2 * n2];
@@ -73,7 +75,7 @@ impl Element {
     }
 
     /// The factors of `n²ᵏ` in the 12×12 matrix, without those of odd couplings.
-    fn power(&self, k: usize) -> [[f64; 12]; 12] {
+    pub(super) fn power(&self, k: usize) -> [[f64; 12]; 12] {
         let mut out = [[0.0; 12]; 12];
         for (pair, &(f, g)) in EVEN.iter().enumerate() {
             put(&mut out, f, g, |i, j| self.even[k][pair][i][j]);
@@ -106,18 +108,7 @@ impl Elements {
 
     /// Sets `out` to the columns for `n` of what meets no end condition.
     pub(super) fn columns(&self, n: usize, out: &mut [Column]) {
-        let n = n as f64;
-        let n2 = n * n;
-        let factors: [Column; FIELDS] = std::array::from_fn(|f| {
-            std::array::from_fn(|k| if (f == 1) != ((f + k) % FIELDS == 1) { n } else { 1.0 })
-        });
-        let [a, b, c] = &self.inside;
-        for (j, (((out, a), b), c)) in out.iter_mut().zip(a).zip(b).zip(c).enumerate() {
-            let factor = &factors[j % FIELDS];
-            for k in 0..ROWS {
-                out[k] = factor[k] * (a[k] + n2 * (b[k] + n2 * c[k]));
-            }
-        }
+        sum_up(&self.inside, n, out);
     }
 
     /// Passes every entry of the lower triangle that the elements next to the pole contribute.
@@ -158,6 +149,22 @@ impl Elements {
     }
 }
 
+/// Sets `out` to the columns for `n` of three bands, by power of `n²`.
+pub(super) fn sum_up(powers: &[Vec<Column>; 3], n: usize, out: &mut [Column]) {
+    let n = n as f64;
+    let n2 = n * n;
+    let factors: [Column; FIELDS] = std::array::from_fn(|f| {
+        std::array::from_fn(|k| if (f == 1) != ((f + k) % FIELDS == 1) { n } else { 1.0 })
+    });
+    let [a, b, c] = powers;
+    for (j, (((out, a), b), c)) in out.iter_mut().zip(a).zip(b).zip(c).enumerate() {
+        let factor = &factors[j % FIELDS];
+        for k in 0..ROWS {
+            out[k] = factor[k] * (a[k] + n2 * (b[k] + n2 * c[k]));
+        }
+    }
+}
+
 #[inline(always)]
 fn put(out: &mut [[f64; 12]; 12], f: usize, g: usize, value: impl Fn(usize, usize) -> f64) {
     for i in 0..4 {
@@ -180,13 +187,26 @@ pub(super) fn assemble<L: Membrane, F: Potential>(
     excess: f64,
     out: &mut Elements,
 ) {
+    out.inside.iter_mut().for_each(|columns| columns.fill([0.0; ROWS]));
+    elements(mesh, u, law, film, c, excess, &mut |e, element| out.set(e, element));
+}
+
+/// Passes the elements of one half in the state `u`, from its pole to the equator.
+pub(super) fn elements<H: HalfMeridian, L: Membrane, F: Potential>(
+    half: &H,
+    u: &[f64],
+    law: &L,
+    film: &F,
+    c: &Coefficients,
+    excess: f64,
+    pass: &mut impl FnMut(usize, &Element),
+) {
     let mut hessian = [[[Lanes::ZERO; 9]; 9]; POWERS];
     let mut lanes = [[Lanes::ZERO; 4]; 4];
-    out.inside.iter_mut().for_each(|columns| columns.fill([0.0; ROWS]));
-    for e in 0..out.count {
+    for e in 0..half.elements() {
         let mut element = Element::ZERO;
-        let local = mesh.local(u, e);
-        for cell in mesh.cells(e) {
+        let local = half.local(u, e);
+        for cell in half.cells(e) {
             let site = Site { weight: cell.weight, area: cell.weight * cell.sin, csc: cell.csc };
             let place = cell.place(&local);
             second_variation(law, film, c, excess, &site, &place, &mut hessian);
@@ -209,7 +229,7 @@ pub(super) fn assemble<L: Membrane, F: Potential>(
                 add(&lanes, false, &mut element.odd[1][pair]);
             }
         }
-        out.set(e, &element);
+        pass(e, &element);
     }
 }
 

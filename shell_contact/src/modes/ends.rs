@@ -58,7 +58,7 @@ pub(super) struct Slot {
 }
 
 impl Slot {
-    fn new(terms: &[(usize, f64)]) -> Slot {
+    pub(super) fn new(terms: &[(usize, f64)]) -> Slot {
         let mut slot = Slot::default();
         for (to, from) in slot.terms.iter_mut().zip(terms) {
             *to = *from;

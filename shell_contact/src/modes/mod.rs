@@ -50,9 +50,11 @@ mod elements;
 mod ends;
 mod inertia;
 mod locate;
+mod whole;
 
 pub use along::{ScanSettings, Scanned, SymmetryBreaking, scan_branch};
 pub use eigen::{Mode, ModeShape};
+pub use whole::{WholeModes, WholeScan};
 
 use crate::contact::{ContactProblem, with_law};
 use crate::density::Coefficients;
@@ -137,6 +139,41 @@ impl Scan {
             Parity::Symmetric => counts[0],
             Parity::Antisymmetric => counts[1],
         })
+    }
+}
+
+/// Which wave numbers are examined: up to the bound and `MARGIN` beyond, further while the last are
+/// not stable, never beyond a largest.
+struct Extent {
+    n: usize,
+    wanted: usize,
+    max_n: usize,
+    /// How many of the last are stable for certain.
+    safe: usize,
+    bounded: bool,
+}
+
+impl Extent {
+    fn new(bound: f64, max_n: usize) -> Extent {
+        // beyond 1000 waves the bound is no bound but a number that is not finite
+        let wanted = FEWEST_WAVES.max(bound.min(1e3).ceil() as usize + MARGIN);
+        Extent { n: 0, wanted, max_n, safe: 0, bounded: bound.is_finite() }
+    }
+
+    /// The next number to be examined.
+    fn next(&mut self) -> Option<usize> {
+        let goes_on = self.n < self.max_n && (self.n < self.wanted || self.safe < MARGIN);
+        self.n += usize::from(goes_on);
+        goes_on.then_some(self.n)
+    }
+
+    fn examined(&mut self, stable: bool) {
+        self.safe = if stable { self.safe + 1 } else { 0 };
+    }
+
+    /// Whether nothing beyond is unstable, by the bound.
+    fn is_enough(&self) -> bool {
+        self.n >= self.wanted && self.safe >= MARGIN && self.bounded
     }
 }
 
@@ -244,16 +281,12 @@ impl<'a> AsymmetricModes<'a> {
         scan.by_wave.clear();
         (scan.antisymmetric, scan.modes, scan.first_n) = (odd.negative, 0, None);
         scan.certain = odd.certain;
-        // beyond 1000 waves the bound is no bound but a number that is not finite
-        let wanted = FEWEST_WAVES.max(self.bound.min(1e3).ceil() as usize + MARGIN);
-        let mut safe = 0;
-        let mut n = 0;
-        while n < max_n && (n < wanted || safe < MARGIN) {
-            n += 1;
+        let mut extent = Extent::new(self.bound, max_n);
+        while let Some(n) = extent.next() {
             let counts = self.counts(n);
             let negative = counts[0].negative + counts[1].negative;
             let certain = counts[0].certain && counts[1].certain;
-            safe = if negative == 0 && certain { safe + 1 } else { 0 };
+            extent.examined(negative == 0 && certain);
             scan.modes += negative;
             scan.certain &= certain;
             if negative > 0 && scan.first_n.is_none() {
@@ -261,8 +294,8 @@ impl<'a> AsymmetricModes<'a> {
             }
             scan.by_wave.push(counts);
         }
-        scan.n_max = n;
-        scan.certain &= n >= wanted && safe >= MARGIN && self.bound.is_finite();
+        scan.n_max = extent.n;
+        scan.certain &= extent.is_enough();
     }
 
     fn ends(&self, n: usize, parity: Parity, neutral: Neutral) -> Ends {
@@ -281,24 +314,7 @@ impl<'a> AsymmetricModes<'a> {
             self.masses.matrix(ends, n, &mut self.mass);
             self.band.axpy(-shift, &self.mass);
         }
-        // a congruence keeps the inertia, and pivots of very unequal rows become comparable
-        let dim = self.band.dim();
-        for j in 0..dim {
-            let d = self.band.column_mut(j)[0].abs();
-            self.scale[j] = if d > 0.0 && d.is_finite() { 1.0 / d.sqrt() } else { 1.0 };
-        }
-        for j in 0..dim {
-            let by = self.scale[j];
-            for (k, entry) in self.band.column_mut(j).iter_mut().enumerate() {
-                *entry *= by * self.scale[j + k];
-            }
-        }
-        let facts = self.band.factor(LEAST_PIVOT);
-        let negative = facts.inertia.map(|(negative, _)| negative);
-        ModeCount {
-            negative: negative.unwrap_or(0),
-            certain: negative.is_some() && facts.perturbed == 0,
-        }
+        count_negative(&mut self.band, &mut self.scale)
     }
 
     /// `x ← (K_n − shift M)⁻¹ x` with the last factors.
@@ -306,5 +322,27 @@ impl<'a> AsymmetricModes<'a> {
         x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
         self.band.solve(x);
         x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+    }
+}
+
+/// Factors a band, scaled to a unit diagonal by `scale`, and counts.
+fn count_negative(band: &mut SymmetricBand, scale: &mut [f64]) -> ModeCount {
+    // a congruence keeps the inertia, and pivots of very unequal rows become comparable
+    let dim = band.dim();
+    for j in 0..dim {
+        let d = band.column_mut(j)[0].abs();
+        scale[j] = if d > 0.0 && d.is_finite() { 1.0 / d.sqrt() } else { 1.0 };
+    }
+    for j in 0..dim {
+        let by = scale[j];
+        for (k, entry) in band.column_mut(j).iter_mut().enumerate() {
+            *entry *= by * scale[j + k];
+        }
+    }
+    let facts = band.factor(LEAST_PIVOT);
+    let negative = facts.inertia.map(|(negative, _)| negative);
+    ModeCount {
+        negative: negative.unwrap_or(0),
+        certain: negative.is_some() && facts.perturbed == 0,
     }
 }

@@ -23,13 +23,13 @@ const POLES_MEET: &str = "the dimples meet: the poles cross each other";
 
 impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     /// The upper half and the lower.
-    pub(super) fn halves(&self) -> [Half<'_>; 2] {
+    pub(crate) fn halves(&self) -> [Half<'_>; 2] {
         Side::BOTH.map(|side| Half::new(&self.mesh, side))
     }
 
     /// The numbers of either half's density, and the gas, with the plates at `±p[0]`; `unknowns`
     /// is their number, from which errors count on to the parameters.
-    pub(super) fn coefficients(
+    pub(crate) fn coefficients(
         &self,
         unknowns: usize,
         p: &[f64],
@@ -75,7 +75,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     }
 
     /// `V̂` of the whole shell, 2/3 for the sphere.
-    pub(super) fn volume(&self, u: &[f64]) -> Result<f64, EvalError> {
+    pub(crate) fn volume(&self, u: &[f64]) -> Result<f64, EvalError> {
         let volumes = self.halves().map(|half| energy::half_volume(&half, u));
         energy::check_volume(volumes[0] + volumes[1], u)
     }
@@ -88,7 +88,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     }
 
     /// The distance of the poles is that of a shell that does not pass through itself there.
-    pub(super) fn check_poles(&self, u: &[f64]) -> Result<(), EvalError> {
+    pub(crate) fn check_poles(&self, u: &[f64]) -> Result<(), EvalError> {
         let [top, bottom] = self.pole_heights(u);
         let value = top + bottom;
         if value > 0.0 {

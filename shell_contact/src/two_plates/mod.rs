@@ -160,8 +160,8 @@ impl TwoPlatesGroups {
 #[derive(Debug, Clone)]
 pub struct TwoPlatesProblem<T: Potential = FourTwo, B: Potential = FourTwo> {
     mesh: Mesh,
-    shell: Shell,
-    potentials: (T, B),
+    pub(crate) shell: Shell,
+    pub(crate) potentials: (T, B),
     groups: TwoPlatesGroups,
     parameters: [Parameter; parameter::COUNT],
     mass: SymmetricBand,
