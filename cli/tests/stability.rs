@@ -72,6 +72,39 @@ fn agree(rows: &[BTreeMap<String, String>], events: &Value) {
     assert!(waiting.next().is_none());
 }
 
+/// `modes.csv` has the mode of every loss of symmetry at every knot: as large as one, with the end
+/// conditions of its class.
+fn modes_are_drawn_at_every_loss(out: &Path) {
+    let events = json(&out.join("events.json"));
+    let events = events["events"].as_array().unwrap();
+    let mut reader = fs::read_to_string(out.join("modes.csv")).unwrap();
+    assert!(reader.starts_with("event,n,parity,s,u,v,w\n"));
+    let body = reader.split_off(reader.find('\n').unwrap() + 1);
+    let mut by_event: BTreeMap<usize, Vec<Vec<&str>>> = BTreeMap::new();
+    for line in body.lines() {
+        let cells: Vec<&str> = line.split(',').collect();
+        by_event.entry(cells[0].parse().unwrap()).or_default().push(cells);
+    }
+    let breaking: Vec<usize> =
+        (0..events.len()).filter(|k| events[*k]["kind"] == "symmetry-breaking").collect();
+    assert_eq!(by_event.keys().copied().collect::<Vec<_>>(), breaking);
+    for (event, rows) in by_event {
+        assert_eq!(rows.len(), 201);
+        let event = &events[event];
+        let number = |row: &[&str], k: usize| row[k].parse::<f64>().unwrap();
+        assert_eq!(number(&rows[0], 1), event["n"].as_f64().unwrap());
+        assert_eq!(rows[0][2], event["parity"].as_str().unwrap());
+        let largest = rows.iter().map(|row| number(row, 6).abs()).fold(0.0, f64::max);
+        assert!((largest - 1.0).abs() < 1e-12, "{event}: {largest}");
+        let (pole, equator) = (&rows[0], &rows[200]);
+        assert_eq!(number(pole, 3), 0.0);
+        // a mode with waves has no height on the axis; at the equator its parity decides
+        assert!(event["n"] == 0 || number(pole, 6).abs() < 1e-9, "{event}");
+        let zero = if event["parity"] == "symmetric" { 6 } else { 4 };
+        assert!(number(equator, zero).abs() < 1e-9, "{event}");
+    }
+}
+
 #[test]
 fn a_hard_shell_says_where_it_loses_its_symmetries() {
     let place = tempfile::tempdir().unwrap();
@@ -80,6 +113,7 @@ fn a_hard_shell_says_where_it_loses_its_symmetries() {
     assert!(shown.contains("n = 2 antisymmetric: 0 → 1"), "{shown}");
     assert!(shown.contains("stability: with and without symmetry, torsion left out\n"), "{shown}");
     let out = place.path().join("o");
+    modes_are_drawn_at_every_loss(&out);
     let events = json(&out.join("events.json"));
     let stability = &events["stability"];
     assert_eq!((&stability["scan"], &stability["certain"]), (&"full".into(), &true.into()));

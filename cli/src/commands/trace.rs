@@ -6,13 +6,14 @@ use super::report::{REPORT, report};
 use crate::arguments::TraceArguments;
 use crate::case::ResolvedCase;
 use crate::exit::Exit;
-use crate::output::{Folder, TraceResult, branch_csv, events_json, summary};
+use crate::output::{Folder, TraceResult, branch_csv, events_json, modes_csv, summary};
 use crate::pictures;
 use crate::run::{run_trace, run_trace_reported};
 use crate::terminal;
 
 const TABLE: &str = "branch.csv";
 const EVENTS: &str = "events.json";
+const MODES: &str = "modes.csv";
 const CASE: &str = "case.toml";
 
 /// Trace a case.
@@ -42,7 +43,7 @@ pub(super) fn trace(arguments: &TraceArguments) -> Exit {
 /// The output folder, checked before the work starts; `None` when no files are wanted.
 fn folder(arguments: &TraceArguments, case: &str) -> Result<Option<Folder>, Exit> {
     let names: Vec<&str> =
-        [TABLE, EVENTS, CASE, REPORT].into_iter().chain(pictures::NAMES).collect();
+        [TABLE, EVENTS, MODES, CASE, REPORT].into_iter().chain(pictures::NAMES).collect();
     arguments.output.folder(case, &names, &arguments.case.inputs())
 }
 
@@ -57,6 +58,9 @@ fn deliver(
     if folder.is_some() {
         made.file(CASE, case.to_toml());
         made.attempt(TABLE, branch_csv(&result.table));
+        if !result.shapes.is_empty() {
+            made.attempt(MODES, modes_csv(&result.shapes));
+        }
         if arguments.report {
             let curves = [("branch".to_owned(), result)];
             made.attempt(REPORT, report(&result.case, &result.stopped_detail, &curves));

@@ -28,10 +28,11 @@ pub(crate) use folder::Folder;
 pub(crate) use manifest::{Earlier, Files, with_files};
 pub(crate) use map::{MapCurve, MapPoint, MapResult, map_json, map_summary};
 pub(crate) use result::{Cell, ContactRow, EventRecord, FormRecord, MaxwellRecord, Table};
-pub(crate) use result::{ModeRecord, Pictures, ResolutionRecord, StabilityRecord, TraceResult};
+pub(crate) use result::{ModeRecord, Pictures, ResolutionRecord, ShapeRecord};
+pub(crate) use result::{StabilityRecord, TraceResult};
 pub(crate) use summary::summary;
 pub(crate) use sweep::{CaseRecord, Kept, Status, Store, StoreError, SweepResult, events_table};
 pub(crate) use sweep::{
     of_one_sweep, phase_csv, sweep_json, sweep_summary, write_curves, write_events,
 };
-pub(crate) use table::branch_csv;
+pub(crate) use table::{branch_csv, modes_csv};

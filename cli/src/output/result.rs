@@ -259,6 +259,22 @@ pub(crate) struct ModeRecord {
     pub(crate) after: usize,
 }
 
+/// The amplitudes of a mode at a special point, at the knots from the pole to the equator: radial and
+/// axial ones times `cos nφ`, those around the axis times `sin nφ`.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ShapeRecord {
+    /// Number of the special point.
+    pub(crate) event: usize,
+    /// Waves around the axis.
+    pub(crate) n: usize,
+    /// `symmetric` or `antisymmetric` about the equator.
+    pub(crate) parity: &'static str,
+    /// Knots.
+    pub(crate) s: Vec<f64>,
+    /// Radial, around the axis, axial.
+    pub(crate) amplitudes: [Vec<f64>; 3],
+}
+
 /// Which modes the stability of a contact branch was examined for.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct StabilityRecord {
@@ -421,6 +437,8 @@ pub(crate) struct TraceResult {
     pub(crate) newton_iterations: usize,
     /// From the resolved case to the last point and event.
     pub(crate) seconds: f64,
+    /// Modes at special points where the branch's symmetries are lost.
+    pub(crate) shapes: Vec<ShapeRecord>,
     /// What the pictures show.
     pub(crate) pictures: Pictures,
 }

@@ -1,7 +1,7 @@
-//! `branch.csv`: one row per point.
+//! `branch.csv`: one row per point; `modes.csv`: one per knot of every mode.
 
 use super::number::exact;
-use super::result::{Cell, Table};
+use super::result::{Cell, ShapeRecord, Table};
 
 /// The table as CSV, numbers with full precision.
 ///
@@ -17,6 +17,24 @@ pub(crate) fn branch_csv(table: &Table) -> Result<Vec<u8>, csv::Error> {
             Cell::Text(text) => text.clone(),
             Cell::Empty => String::new(),
         }))?;
+    }
+    writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))
+}
+
+/// The amplitudes of modes as CSV: one row per knot of each.
+///
+/// # Errors
+/// What the writer reports; memory does not fail, so none is expected.
+pub(crate) fn modes_csv(shapes: &[ShapeRecord]) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(["event", "n", "parity", "s", "u", "v", "w"])?;
+    for shape in shapes {
+        let (event, n) = (shape.event.to_string(), shape.n.to_string());
+        let [u, v, w] = &shape.amplitudes;
+        for (((s, u), v), w) in shape.s.iter().zip(u).zip(v).zip(w) {
+            let [s, u, v, w] = [s, u, v, w].map(|x| exact(*x));
+            writer.write_record([&event, &n, shape.parity, &s, &u, &v, &w])?;
+        }
     }
     writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))
 }

@@ -47,6 +47,7 @@ pub(crate) fn example() -> TraceResult {
         certified: Some(true),
         newton_iterations: 17,
         seconds: 0.25,
+        shapes: Vec::new(),
         pictures: Pictures::default(),
     }
 }

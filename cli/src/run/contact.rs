@@ -245,6 +245,7 @@ fn examined(
         maxwell: None,
         stability: Some(stability.record()),
         resolution: resolved.and_then(Resolved::record),
+        shapes: stability.shapes(branch),
         pictures: Pictures::default(),
     }
 }

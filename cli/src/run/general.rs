@@ -148,6 +148,7 @@ pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> Trac
         certified: certified(branch),
         newton_iterations: branch.statistics.newton_iterations,
         seconds,
+        shapes: Vec::new(),
         pictures,
     }
 }

@@ -2,10 +2,10 @@
 
 use super::{Observer, Progress};
 use crate::case::{ResolvedCase, StabilityCase};
-use crate::output::{Cell, ModeRecord, StabilityRecord};
+use crate::output::{Cell, ModeRecord, ShapeRecord, StabilityRecord};
 use crate::pictures::Examined;
 use continuation::{Branch, Event, EventKind, Point, Problem, StopReason};
-use shell_contact::modes::{Scan, ScanSettings, Scanned, SymmetryBreaking, scan_branch};
+use shell_contact::modes::{ModeShape, Scan, ScanSettings, Scanned, SymmetryBreaking, scan_branch};
 use shell_contact::{ContactBranch, ContactProblem};
 
 /// Kind of the states at which a mode without the branch's symmetries turns.
@@ -18,6 +18,8 @@ pub(super) struct Stability {
     scans: Vec<Scan>,
     /// In order along the branch.
     modes: Vec<ModeRecord>,
+    /// Their amplitudes.
+    shapes: Vec<ModeShape>,
     /// The new number of each special point that the branch had.
     renumbered: Vec<usize>,
     missed: usize,
@@ -118,6 +120,21 @@ impl Stability {
         self.modes.get(branch.events[..event].iter().filter(own).count()).copied()
     }
 
+    /// The modes of the branch's special points with their amplitudes.
+    pub(super) fn shapes(&self, branch: &Branch) -> Vec<ShapeRecord> {
+        let breaking = (0..branch.events.len()).filter(|k| self.mode(branch, *k).is_some());
+        let records = breaking.zip(self.modes.iter().zip(&self.shapes));
+        records
+            .map(|(event, (mode, shape))| ShapeRecord {
+                event,
+                n: mode.n,
+                parity: mode.parity,
+                s: shape.s.clone(),
+                amplitudes: [&shape.u, &shape.v, &shape.w].map(Clone::clone),
+            })
+            .collect()
+    }
+
     /// The special points at which the mirror symmetry is lost or regained.
     pub(super) fn forks(&self, branch: &Branch) -> Vec<usize> {
         let is_fork = |event: &usize| self.mode(branch, *event).is_some_and(|mode| mode.n == 0);
@@ -165,6 +182,7 @@ fn insert(problem: &ContactProblem, branch: &mut Branch, scanned: Scanned) -> St
             let more =
                 own.filter(|s| s.modes + s.antisymmetric > after.modes + after.antisymmetric);
             out.scans.push(more.unwrap_or(after).clone());
+            out.shapes.push(one.mode_shape.clone());
             out.modes.push(ModeRecord {
                 n: one.n,
                 parity: one.parity.name(),

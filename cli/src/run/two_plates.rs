@@ -181,6 +181,7 @@ fn tabulated(
         seconds,
         maxwell: None,
         stability: Some(waves.map_or(own, Waves::record)),
+        shapes: Vec::new(),
         pictures: Pictures::default(),
     }
 }
