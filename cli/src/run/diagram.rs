@@ -192,7 +192,7 @@ pub(crate) fn run_diagram(
                 }
                 Presented { trace, curve, stability }
             });
-            if explored.branches.len() > 0 && explored.stopped_because != "interrupted" {
+            if !explored.branches.is_empty() && explored.stopped_because != "interrupted" {
                 for one in &mut explored.branches {
                     one.symmetry = Some(Symmetry::Mirror);
                 }
