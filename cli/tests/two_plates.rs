@@ -160,3 +160,112 @@ fn bad_plates_are_named_with_what_to_do() {
         assert!(error.contains("mirror-symmetric states only"), "{error}");
     }
 }
+
+/// The symmetric branch of Fig. 12 with the asymmetric ones: the bubble on one plate, one dimple
+/// deeper than the other, and one pole flat while the other is buckled.
+#[test]
+fn asymmetric_branches_stand_beside_the_symmetric_one() {
+    let place = tempfile::tempdir().unwrap();
+    let output = arclen(place.path(), &["diagram", "fig12", "--elements", "100", "--out", "o"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let out = place.path().join("o");
+    let json = self::json(&out.join("diagram.json"));
+    // modes with waves lead on, and nothing follows them
+    assert_eq!(json["stopped_because"], "incomplete");
+    let detail = json["stopped_detail"].as_str().unwrap();
+    assert!(detail.contains("waves around the axis") && !detail.contains("mirror"), "{detail}");
+    assert_eq!(json["stability"]["scan"], "full");
+    let branches = json["branches"].as_array().unwrap();
+    let kinds: Vec<&str> = branches.iter().map(|b| b["symmetry"].as_str().unwrap()).collect();
+    let (mirror, other) = ("symmetric about the equator", "asymmetric about the equator");
+    assert_eq!(kinds, [mirror, other, other, other, other]);
+    // every fork has its branch: it begins there, or ends there
+    let forks: Vec<usize> = branches[0]["events"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .enumerate()
+        .filter(|(_, e)| e["kind"] == "symmetry-breaking" && e["n"] == 0)
+        .map(|(k, _)| k)
+        .collect();
+    assert_eq!(forks.len(), 5);
+    let joints = json["joints"].as_array().unwrap();
+    assert_eq!(joints.len(), 5);
+    for (joint, fork) in joints.iter().zip(&forks) {
+        assert_eq!(joint["passed"][0]["event"], *fork);
+        assert_eq!(joint["open"], 0);
+        let met =
+            joint["begun"].as_array().unwrap().len() + joint["passed"].as_array().unwrap().len();
+        assert!(met >= 2, "{joint}");
+    }
+    // a branch that is stable to axisymmetric modes at the closest plates, flat at one pole
+    let (mut ends, mut seen, mut all_stable) = (Vec::new(), Vec::new(), Vec::new());
+    for branch in &branches[1..] {
+        let name = branch["csv"].as_str().unwrap();
+        assert!(name.ends_with("-asymmetric.csv"));
+        assert_eq!(branch["from"]["branch"], 0);
+        let file = out.join(name);
+        let (top, bottom) = (column(&file, "force"), column(&file, "force_bottom"));
+        assert!(top.iter().zip(&bottom).all(|(a, b)| (a - b).abs() < 1e-8));
+        let (z0, unstable, shift) =
+            (column(&file, "z0"), column(&file, "unstable"), column(&file, "shift"));
+        // one of both images
+        let sides = shift.iter().map(|s| s * shift[shift.len() / 2] > -1e-9);
+        assert!(sides.clone().all(|same| same), "{name}: {shift:?}");
+        let closest = (0..z0.len()).find(|k| z0[*k] == 0.65);
+        ends.extend(closest.map(|k| (unstable[k], shift[k].abs())));
+        let modes = column(&file, "unstable_modes");
+        let text = fs::read_to_string(&file).unwrap();
+        let words: Vec<&str> =
+            text.lines().skip(1).map(|l| l.rsplit(',').next().unwrap()).collect();
+        let says = |n: f64| if n > 0.0 { "no" } else { "yes" };
+        for (k, word) in words.iter().enumerate() {
+            assert_eq!(*word, says(unstable[k] + modes[k]), "{name}, point {k}");
+        }
+        all_stable.push(words.iter().all(|word| *word == "yes"));
+        seen.push(modes.iter().any(|n| *n > 0.0));
+    }
+    // away from both plates the shell is round; between them a dimple is not
+    assert_eq!(seen.iter().filter(|seen| **seen).count(), 3, "{seen:?}");
+    assert!(!all_stable.contains(&true));
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert_eq!(ends.len(), 2);
+    assert!(ends[0].0 == 0.0 && ends[1].0 == 1.0 && ends[0].1 > 0.1, "{ends:?}");
+    let picture = fs::read_to_string(out.join("diagram.svg")).unwrap();
+    assert!(picture.contains("asymmetric about the equator"));
+
+    // the same without: said, and the files of the others are gone
+    let line = "diagram fig12 --elements 100 --set stability.scan=axisymmetric --out o";
+    let output = arclen(place.path(), &line.split(' ').collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(0));
+    let json = self::json(&out.join("diagram.json"));
+    assert_eq!(json["stopped_because"], "complete");
+    assert!(json["stopped_detail"].as_str().unwrap().contains("without mirror symmetry"));
+    assert_eq!(json["branches"].as_array().unwrap().len(), 1);
+    let entries = fs::read_dir(&out).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    assert_eq!(names, ["branch-0.csv", "case.toml", "diagram.json", "diagram.svg"]);
+}
+
+/// A soft shell keeps its circular shape: with the branch onto one plate its diagram is complete. No
+/// deeper than the first branch, that one is left out, and the diagram is not.
+#[test]
+fn a_diagram_is_complete_when_nothing_known_is_left_out() {
+    let place = tempfile::tempdir().unwrap();
+    let soft = "problem = \"contact\"\n[shell]\nlaw = \"mooney-rivlin\"\nb = 1.0\n\
+                [dimensionless]\nbending = 2.7e-3\npressure = 3.0\nadhesion = 2e-3\n\
+                film = 0.0333\n[mesh]\nelements = 60\n[path]\nstart = 1.15\nend = 0.9\n";
+    fs::write(place.path().join("soft.toml"), soft).unwrap();
+    for (more, code, word, branches) in
+        [(&[][..], 0, "complete", 2), (&["--depth", "0"], 3, "incomplete", 1)]
+    {
+        let line = [&["diagram", "soft.toml", "--out", "o"][..], more].concat();
+        let output = arclen(place.path(), &line);
+        assert_eq!(output.status.code(), Some(code), "{}", String::from_utf8_lossy(&output.stdout));
+        let json = self::json(&place.path().join("o/diagram.json"));
+        assert_eq!(json["stopped_because"], word, "{}", json["stopped_detail"]);
+        assert_eq!(json["branches"].as_array().unwrap().len(), branches);
+    }
+}

@@ -191,6 +191,7 @@ impl Search<'_, '_> {
         let over = (1..PLACES).map(|k| low + (high - low) * k as f64 / PLACES as f64);
         let places: Vec<f64> = beside.chain(over).filter(|z0| (low..high).contains(z0)).collect();
         for k in 0..self.symmetric.branches.len() {
+            let mut before = None;
             loop {
                 if self.is_full() {
                     return;
@@ -200,6 +201,12 @@ impl Search<'_, '_> {
                 let Some(state) = next_unconnected(self.problem, trunk, &known, &places) else {
                     break;
                 };
+                // a branch that does not lead through its own state would be found again and again
+                if before == Some((state.z0, state.plates)) {
+                    self.out.unfinished += 1;
+                    break;
+                }
+                before = Some((state.z0, state.plates));
                 let (settings, watches) = (self.settings.clone(), force_watches());
                 let done = self.next_id();
                 let observer = &mut *self.observer;
@@ -212,8 +219,10 @@ impl Search<'_, '_> {
                     &watches,
                     &mut listen,
                 );
-                // a state that no branch leads through would be found again and again
-                let Ok(traced) = traced else { break };
+                let Ok(traced) = traced else {
+                    self.out.unfinished += 1;
+                    break;
+                };
                 let depth = 1;
                 self.take(traced, From::Springs { branch: k, parameter: state.z0 }, depth);
             }

@@ -418,6 +418,7 @@ fn with_asymmetric(diagram: &mut DiagramResult, found: asymmetric::Asymmetric, w
     diagram.stopped_detail += &detail;
     if found.interrupted {
         diagram.stopped_because = "interrupted";
+        diagram.stopped_detail = "among the branches without mirror symmetry".to_owned();
     } else if !detail.is_empty() && diagram.stopped_because == "complete" {
         diagram.stopped_because = "incomplete";
     }

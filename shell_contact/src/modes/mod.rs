@@ -15,7 +15,8 @@
 //! Two motions cost nothing and are left out of the counts: translation along the plates and, as
 //! the film has no friction and the sphere is isotropic, the rotation of the shell's material under
 //! its own dents (both `n = 1`). Without any film there are more (module `ends`): then counts of
-//! `n = 0` and `n = 1` are uncertain. Torsion (`n = 0`, along `φ`), friction and self-contact are
+//! `n = 0` and `n = 1` are uncertain. About a state that is not its own mirror image there are no two
+//! classes, and the whole meridian is one matrix ([`WholeModes`]). Torsion (`n = 0`, along `φ`), friction and self-contact are
 //! not examined.
 //!
 //! ```

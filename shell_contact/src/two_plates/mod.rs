@@ -15,8 +15,8 @@
 //! in equilibrium both plates carry the same force. [`SupportedProblem`] holds the equator in the
 //! mid-plane instead, or puts the upper plate on a spring. Among the axisymmetric variations those
 //! that break the mirror symmetry are counted: the zero of their stiffness is a branch point here.
-//! Modes `cos nφ` are not examined, and that a dimple touches anything but the opposite pole is not
-//! noticed.
+//! Modes `cos nφ` are those of [`crate::modes::WholeModes`]. That a dimple touches anything but the
+//! opposite pole is not noticed.
 //!
 //! ```
 //! use continuation::{NewtonSettings, Problem, newton};
