@@ -47,7 +47,7 @@ impl Cubic {
         let [s0, s1] = self.s;
         let (a, b) = (3.0 * (s0 + s1) - 6.0 * change, 6.0 * change - 4.0 * s0 - 2.0 * s1);
         let turn = -0.5 * b / a;
-        (turn > 0.0 && turn < 1.0).then(|| (s0 + 0.5 * b * turn, a))
+        (turn > 0.0 && turn < 1.0).then_some((s0 + 0.5 * b * turn, a))
     }
 
     /// Whether the cubic has two zeros inside though the ends have the same sign.

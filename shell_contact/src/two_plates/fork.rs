@@ -215,7 +215,7 @@ fn fork<T: Potential, B: Potential>(
 fn direction<P: Problem>(problem: &P, mut du: Vec<f64>, dp: f64) -> Direction {
     let length = norm(problem, &du).hypot(dp);
     du.iter_mut().for_each(|x| *x /= length);
-    Direction { du, dp: dp / length, bend: 0.0, amplitude: 0.0 }
+    Direction { du, dp: dp / length, bend: 0.0, amplitude: 0.0, offset: None }
 }
 
 /// The odd vector whose stiffness is nearest to zero, by inverse iteration among odd vectors.
