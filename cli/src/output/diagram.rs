@@ -175,6 +175,11 @@ impl DiagramResult {
         records.reduce(|all, one| all.and(&one))
     }
 
+    /// The title of its picture.
+    pub(crate) fn title(&self) -> String {
+        self.resolution().map_or_else(|| self.case.clone(), |record| record.titled(&self.case))
+    }
+
     /// How well the elements resolve the branch where they do worst; `None` where that was not examined.
     fn resolution(&self) -> Option<ResolutionRecord> {
         let records = self.branches.iter().filter_map(|one| one.trace.resolution);

@@ -354,6 +354,15 @@ impl ResolutionRecord {
         )
     }
 
+    /// A title that says it.
+    pub(crate) fn titled(&self, title: &str) -> String {
+        if self.enough {
+            title.to_owned()
+        } else {
+            format!("{title} (elements too long: not resolved)")
+        }
+    }
+
     /// The worse of two.
     pub(super) fn and(self, other: &ResolutionRecord) -> ResolutionRecord {
         let ratio = |one: &ResolutionRecord| one.wanted as f64 / one.elements as f64;

@@ -55,7 +55,7 @@ pub(crate) fn draw_diagram(result: &DiagramResult) -> Result<String, DrawError> 
     let curves: Vec<(Level, &Curve)> =
         result.branches.iter().map(|branch| (level(branch), &branch.curve)).collect();
     let (x, y) = &result.axes;
-    draw::branches(&result.case, x, y, &curves)
+    draw::branches(&result.title(), x, y, &curves)
 }
 
 /// All pictures for which there are data: file name and SVG.

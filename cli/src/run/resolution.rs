@@ -59,9 +59,6 @@ impl Resolved {
 
     /// A title that says it.
     pub(super) fn titled(&self, title: &str) -> String {
-        match self.record {
-            Some(record) if !record.enough => format!("{title} (elements too long: not resolved)"),
-            _ => title.to_owned(),
-        }
+        self.record.map_or_else(|| title.to_owned(), |record| record.titled(title))
     }
 }
