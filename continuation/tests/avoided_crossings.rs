@@ -8,21 +8,8 @@ use std::ops::ControlFlow;
 
 mod polynomial;
 use polynomial::Polynomial;
-
-/// Numbers in (0, 1), always the same.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * self.next()
-    }
-}
+mod random;
+use random::Random;
 
 fn follow<P: Problem>(problem: &P, u: &[f64], p: f64, settings: Settings) -> Branch {
     Tracer::new(problem, "p", u, &[p], settings).unwrap().run(&mut |_| ControlFlow::Continue(()))

@@ -5,15 +5,8 @@
 use continuation::{Branch, DenseProblem, Detail, EventKind, Problem, Settings, Tracer};
 use std::ops::ControlFlow;
 
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        low + (high - low) * (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
+mod random;
+use random::Random;
 
 fn trace<P: Problem>(problem: &P, u: &[f64], p: f64, max_step: f64) -> Branch {
     let settings =
@@ -94,4 +87,42 @@ fn no_fold_where_the_branch_stands_still_and_goes_on() {
         );
         assert!(branch.is_complete(), "{case}: {:?} {:?}", branch.stopped, branch.doubts);
     }
+}
+
+/// `p = −∫ x exp(−w²/x²)`: flatter than any power at the fold. No order can be said, and the error still
+/// contains it.
+#[test]
+fn a_fold_of_no_order_is_bracketed() {
+    let (mut bracketed, mut doubted) = (0, 0);
+    for place in [0.0, 0.1, 0.2345, -0.3] {
+        for (step, w) in [(0.03, 0.02), (0.1, 0.2), (0.3, 0.05), (0.2, 0.03), (0.1, 1.0)] {
+            // by Simpson's rule
+            let p = move |x: f64| {
+                let n = 200;
+                let h = x / f64::from(n);
+                let slope = |x: f64| if x == 0.0 { 0.0 } else { x * (-(w / x).powi(2)).exp() };
+                let weight = |k: i32| if k % 2 == 1 { 4.0 } else { 2.0 };
+                let inner: f64 = (1..n).map(|k| weight(k) * slope(h * f64::from(k))).sum();
+                -(slope(x) + inner) * h / 3.0
+            };
+            let problem = DenseProblem::from_residual(1, &["p"], move |u, q, r| {
+                r[0] = q[0] - p(u[0] - place);
+            })
+            .boxed();
+            let branch = trace(&problem, &[place - 1.0], p(-1.0), step);
+            let case = format!("{place}, {step}, {w}: {:?}", branch.events);
+            let [event] = &branch.events[..] else {
+                assert!(branch.events.is_empty() && !branch.is_certain(), "{case}");
+                doubted += 1;
+                continue;
+            };
+            let off = (branch.points[event.point].u[0] - place).abs();
+            assert!(off <= event.error_estimate, "{case}: {off:.1e}");
+            let Detail::Fold(form) = &event.detail else { panic!("{case}") };
+            assert_eq!(form.order, None, "{case}");
+            bracketed += 1;
+        }
+    }
+    println!("{bracketed} bracketed, {doubted} doubted");
+    assert!(bracketed > 4);
 }

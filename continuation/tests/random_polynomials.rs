@@ -9,17 +9,16 @@ use std::ops::ControlFlow;
 mod polynomial;
 use polynomial::Polynomial;
 
-struct Random(u64);
+mod random;
+use random::Random;
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        2.0 * (self.0 >> 11) as f64 / (1u64 << 53) as f64 - 1.0
+        self.between(-1.0, 1.0)
     }
 
     fn below(&mut self, n: usize) -> usize {
-        (0.5 * (self.next() + 1.0) * n as f64) as usize
+        self.between(0.0, n as f64) as usize
     }
 }
 

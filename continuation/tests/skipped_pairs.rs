@@ -7,21 +7,8 @@ use std::ops::ControlFlow;
 
 mod polynomial;
 use polynomial::Polynomial;
-
-/// Numbers in [0, 1) without a pattern.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-}
+mod random;
+use random::Random;
 
 fn follow<P: Problem>(problem: &P, u: &[f64], p: f64, settings: Settings) -> Branch {
     Tracer::new(problem, "p", u, &[p], settings).unwrap().run(&mut |_| ControlFlow::Continue(()))
@@ -44,11 +31,11 @@ struct Member {
 impl Member {
     fn new(random: &mut Random) -> Self {
         Member {
-            c: random.within(-0.8, 0.8),
-            w: 10f64.powf(random.within(-3.0, -1.0)),
-            omega: random.within(1.0, 2.0),
-            tilt: random.within(-0.4, 0.4),
-            bend: [random.within(-1.0, 1.0), random.within(-1.0, 1.0)],
+            c: random.between(-0.8, 0.8),
+            w: 10f64.powf(random.between(-3.0, -1.0)),
+            omega: random.between(1.0, 2.0),
+            tilt: random.between(-0.4, 0.4),
+            bend: [random.between(-1.0, 1.0), random.between(-1.0, 1.0)],
         }
     }
 

@@ -5,6 +5,9 @@
 use continuation::{Branch, DenseProblem, Settings, StopReason, Tracer};
 use std::ops::ControlFlow;
 
+mod random;
+use random::Random;
+
 fn follow(f: impl Fn(f64, f64) -> f64 + 'static, (u, p): (f64, f64), settings: Settings) -> Branch {
     let problem =
         DenseProblem::from_residual(1, &["p"], move |u, p, r| r[0] = f(u[0], p[0])).boxed();
@@ -45,11 +48,8 @@ fn a_branch_to_infinity_ends_as_unbounded_without_invented_points() {
 /// Poles of random places, signs and orders, beside an unknown that stays finite, seen from all sides.
 #[test]
 fn random_poles() {
-    let mut seed = 3_u64;
-    let mut random = move |low: f64, high: f64| {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        low + (high - low) * (seed >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut seed = Random(3);
+    let mut random = |low, high| seed.between(low, high);
     for case in 0..60 {
         let pole = random(-0.5, 0.5);
         let size = 10f64.powf(random(-1.0, 1.0));

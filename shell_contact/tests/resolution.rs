@@ -18,10 +18,12 @@ impl Random {
 
 /// Folds of a traced branch, force at its end, the least resolution, and why it ended; `None` where the
 /// film pulls the shell onto the plate at the start.
-fn traced(groups: &Dimensionless, elements: usize) -> Option<(usize, f64, Resolution, String)> {
-    let shell = Shell { law: Law::Hooke, poisson: 0.5 };
-    let mesh = Mesh::uniform(elements).unwrap();
-    let problem = ContactProblem::new(&shell, groups, mesh).unwrap();
+fn traced(
+    shell: &Shell,
+    groups: &Dimensionless,
+    mesh: Mesh,
+) -> Option<(usize, f64, Resolution, String)> {
+    let problem = ContactProblem::new(shell, groups, mesh).unwrap();
     let settings = Settings {
         target: Some(0.75),
         max_step: Some(0.01),
@@ -54,11 +56,19 @@ fn what_is_called_resolved_is() {
             pressure: [0.0, 0.05, 0.2][case % 3],
             adhesion: 10f64.powf(random.between(-4.5, -1.0)),
             film: 10f64.powf(random.between(-2.6, -1.0)),
-            surface_tension: 0.0,
+            surface_tension: [0.0, 0.0, 0.1, 1.0][case % 4],
             gas_exponent: 1.07,
         };
-        let Some((folds, end, least, stop)) = traced(&groups, 60) else { continue };
-        let Some((known, right, _, whole)) = traced(&groups, 240) else { continue };
+        let law =
+            [Law::Hooke, Law::MooneyRivlin { b: random.between(0.0, 1.0) }, Law::Skalak][case % 3];
+        let shell =
+            Shell { law, poisson: if case % 3 == 1 { 0.5 } else { random.between(-0.3, 0.5) } };
+        let mesh = |elements| match case % 5 {
+            0 => Mesh::graded(elements, 3.0).unwrap(),
+            _ => Mesh::uniform(elements).unwrap(),
+        };
+        let Some((folds, end, least, stop)) = traced(&shell, &groups, mesh(90)) else { continue };
+        let Some((known, right, _, whole)) = traced(&shell, &groups, mesh(360)) else { continue };
         let same =
             folds == known && stop == whole && (end - right).abs() < 0.02 * right.abs().max(1.0);
         if least.is_enough() {

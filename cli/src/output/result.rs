@@ -330,6 +330,8 @@ pub(crate) struct ResolutionRecord {
     pub(crate) per_film_length: f64,
     /// Elements per wavelength of the shell.
     pub(crate) per_wavelength: f64,
+    /// How many of both are called enough.
+    pub(crate) needed: [f64; 2],
     /// Plate distance where that is.
     pub(crate) z0: f64,
     /// Whether both are enough.
@@ -347,10 +349,16 @@ impl ResolutionRecord {
             return String::new();
         }
         format!(
-            "not resolved: at z0 = {:.5} {} elements are {:.2} per film length (0.6 are needed) and {:.1} \
-             per wavelength of the shell (10): folds and forces may be those of the mesh; take \
-             mesh.elements = {} or more\n",
-            self.z0, self.elements, self.per_film_length, self.per_wavelength, self.wanted,
+            "not resolved: at z0 = {:.5} {} elements are {:.2} per film length ({} needed) \
+             and {:.1} per wavelength of the shell ({} needed): folds and forces may be those of the \
+             mesh; take mesh.elements = {} or more\n",
+            self.z0,
+            self.elements,
+            self.per_film_length,
+            self.needed[0],
+            self.per_wavelength,
+            self.needed[1],
+            self.wanted,
         )
     }
 

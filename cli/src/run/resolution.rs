@@ -1,6 +1,7 @@
 //! Whether the elements resolve the film and the shell along a contact branch.
 
 use crate::output::{Cell, ResolutionRecord};
+use shell_contact::resolution::{FEWEST_PER_FILM_LENGTH, FEWEST_PER_WAVELENGTH};
 use shell_contact::{ContactBranch, ContactProblem, Resolution};
 
 /// Elements per length of the solution, at every point.
@@ -32,6 +33,7 @@ impl Resolved {
         let record = worst.map(|(point, worst)| ResolutionRecord {
             per_film_length: worst.per_film_length,
             per_wavelength: worst.per_wavelength,
+            needed: [FEWEST_PER_FILM_LENGTH, FEWEST_PER_WAVELENGTH],
             z0: at(point),
             enough: worst.is_enough(),
             elements: problem.mesh().elements(),

@@ -23,8 +23,8 @@ const SUCCESSIVE: usize = 3;
 /// What the surroundings of a fold say.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Flat {
-    /// `k`, even.
-    pub(crate) order: usize,
+    /// `k`, even; `None` where it does not show, and the place is only bracketed.
+    pub(crate) order: Option<usize>,
     /// Scaled distance from the step's first end.
     pub(crate) at: f64,
     /// Estimated error of it.
@@ -57,14 +57,14 @@ impl Rung {
 }
 
 /// Order and place of the fold near `at` in the step of length `h` from `a` to `b`, where dp/ds is in
-/// error by `missed`. `None` where no order shows.
+/// error by `missed`.
 pub(crate) fn flat_fold<P: Problem>(
     core: &mut Core<'_, P>,
     (a, b): (&State, &State),
     h: f64,
     (mut at, missed): (f64, f64),
     x: &mut State,
-) -> Result<Option<Flat>, Refusal> {
+) -> Result<Flat, Refusal> {
     let bend = bend(core, a, b);
     let rounding = (4.0 * f64::EPSILON * core.weights.parameter).max(missed);
     let mut rung = |at: f64, distance: f64| {
@@ -89,11 +89,19 @@ pub(crate) fn flat_fold<P: Problem>(
             at = (at + now.offset(order.max(1.0))).clamp(0.0, h);
         }
     }
-    let mut found = None;
+    // it lies between slopes of opposite signs that are more than rounding, wherever that is
+    let clear = |rung: &&Rung| rung.before.abs().min(rung.after.abs()) > rounding;
+    let mut found = Flat { order: None, at, error: h };
     for _ in 0..CENTRINGS {
         let rungs = ladder(&mut rung, at, h, rounding)?;
-        let Some((flat, offset)) = read(&rungs, at, missed) else { break };
-        found = Some(flat);
+        let Some((flat, offset)) = read(&rungs, at, missed) else {
+            if found.order.is_none() {
+                let nearest = rungs.iter().rev().find(clear).map(|rung| rung.distance);
+                found = Flat { order: None, at, error: nearest.unwrap_or(h) };
+            }
+            break;
+        };
+        found = flat;
         let finest = rungs.last().map_or(0.0, |rung| rung.distance);
         if offset.abs() < CENTRED * finest || !(flat.at > 0.0 && flat.at < h) {
             break;
@@ -122,10 +130,6 @@ fn ladder(
             // beyond the step it may be another branch's
             _ => rungs.clear(),
         }
-        // two more than needed of a simple fold
-        if rungs.len() > 8 && orders(&rungs).rev().take(3).all(|m| (m - 1.0).abs() < NEAR) {
-            break;
-        }
     }
     Ok(rungs)
 }
@@ -140,6 +144,10 @@ fn read(rungs: &[Rung], at: f64, missed: f64) -> Option<(Flat, f64)> {
     let same = |k: &[Option<usize>]| k[0].is_some() && k.iter().all(|m| *m == k[0]);
     let finest = measured.windows(SUCCESSIVE).rposition(same)?;
     let m = measured[finest]?;
+    // rounding makes dp/ds less flat on the way to the fold, never flatter
+    if orders(rungs).skip(finest + SUCCESSIVE).any(|later| later > m as f64 + 1.0) {
+        return None;
+    }
     // the next term makes an error of second order in the distance, which halves
     let offsets: Vec<f64> = rungs.iter().map(|rung| rung.offset(m as f64)).collect();
     let places: Vec<f64> = offsets.windows(2).map(|w| 2.0 * w[1] - w[0]).collect();
@@ -151,7 +159,7 @@ fn read(rungs: &[Rung], at: f64, missed: f64) -> Option<(Flat, f64)> {
     let error = |k: usize| 2.0 * crate::linalg::max_abs(around(k)) + blur(k + 1);
     let best = (0..change.len()).min_by(|&i, &j| error(i).total_cmp(&error(j)))?;
     let (offset, error) = (places[best + 1], error(best).max(f64::EPSILON * (1.0 + at)));
-    Some((Flat { order: m + 1, at: at + offset, error }, offset))
+    Some((Flat { order: Some(m + 1), at: at + offset, error }, offset))
 }
 
 /// The orders of dp/ds between successive rungs.

@@ -5,10 +5,12 @@
 //! to come, estimated from the measured quadratic convergence, so that a good step needs no
 //! assembly that only confirms.
 
+mod nearly_singular;
+
 use super::stability::StabilityCount;
 use super::{Guard, Refusal, State, Weights};
 use crate::branch::Statistics;
-use crate::linalg::{Bordered, BorderedFacts, Matrix, max_abs};
+use crate::linalg::{Bordered, BorderedFacts, max_abs};
 use crate::problem::{EvalError, ParamId, Problem, check_finite, check_pattern};
 use crate::settings::Settings;
 use crate::singular::{Extended, Probe, arbitrary};
@@ -51,11 +53,6 @@ const STEEP: f64 = 1e2;
 /// The parameter's part of the tangent, in its scale, below which tangent and counts are those of the
 /// state, not of the iterate before it.
 const STANDS_STILL: f64 = 1e-6;
-/// Growth of a solution, relative to its right-hand side row by row, above which a matrix deserves a
-/// closer look.
-const NEARLY_SINGULAR: f64 = 1e8;
-/// A row smaller than this part of the largest counts as that: it may be zero.
-const ROW: f64 = 1e-4;
 
 /// The problem, its matrices and all work space of the tracer.
 pub(crate) struct Core<'a, P: Problem> {
@@ -434,57 +431,6 @@ impl<'a, P: Problem> Core<'a, P> {
         let Some(curve) = self.problem.special_points() else { return Ok(None) };
         self.p[self.which.0] = x.p;
         curve.separation(&x.u, &self.p).map_err(Refusal::Evaluation)
-    }
-
-    /// Whether the matrix bordered by the tangent of the latest start is singular to rounding, or so
-    /// nearly that it may be.
-    ///
-    /// The size of a row is that of what it has to say a little way off: at a branch point of few
-    /// unknowns its derivatives are all rounding.
-    pub(crate) fn is_nearly_singular(&mut self, x: &State) -> bool {
-        let n = self.du.len();
-        let Weights { unknowns, parameter } = self.weights;
-        // the size of each row, for unknowns and parameter in units of their scales
-        let mut sizes = vec![0.0_f64; n];
-        for seed in 31..33 {
-            for (i, d) in self.du.iter_mut().enumerate() {
-                *d = arbitrary(seed, i);
-            }
-            self.problem.metric(&self.du, &mut self.mdu);
-            let norm = super::dot(&self.mdu, &self.du).max(0.0).sqrt();
-            let length = if norm > 0.0 { unknowns / norm } else { 1.0 };
-            self.du.iter_mut().for_each(|d| *d *= length);
-            self.jacobian.mul(&self.du, &mut self.mdu);
-            let dp = parameter * arbitrary(seed, n);
-            for ((s, y), f) in sizes.iter_mut().zip(&self.mdu).zip(self.bordered.column(0)) {
-                *s = s.max((y + dp * f).abs());
-            }
-        }
-        if max_abs(&sizes) == 0.0 {
-            return true;
-        }
-        let [here, there] = &mut self.shifted;
-        there.copy_from_slice(&x.u);
-        for (i, (place, u)) in there.iter_mut().zip(&x.u).enumerate() {
-            *place += 0.1 * (u.abs() + unknowns) * arbitrary(34, i);
-        }
-        self.p[self.which.0] = x.p;
-        let known = self.problem.residual(&x.u, &self.p, here).is_ok();
-        if known && self.problem.residual(there, &self.p, &mut self.mdu).is_ok() {
-            for ((s, a), b) in sizes.iter_mut().zip(&self.mdu).zip(&*here) {
-                let change = (a - b).abs();
-                *s = if change.is_finite() { s.max(change) } else { *s };
-            }
-        }
-        let largest = max_abs(&sizes);
-        for (i, (d, s)) in self.du.iter_mut().zip(&sizes).enumerate() {
-            *d = s.max(ROW * largest) * arbitrary(33, i);
-        }
-        let mut g = [0.0];
-        self.bordered.solve(&mut self.jacobian, &mut self.du, &mut g);
-        self.problem.metric(&self.du, &mut self.mdu);
-        let size = self.weights.norm(&self.mdu, &self.du, g[0]);
-        size.is_nan() || size > NEARLY_SINGULAR
     }
 
     /// The derivative that is not that of the residual at `x`, if there is one beyond doubt.

@@ -260,25 +260,22 @@ impl<P: Problem> Tracer<'_, P> {
         let Self { core, current: a, trial: b, work, settings, .. } = self;
         let mut place = locate(core, a, b, h, &candidate, settings.event_tolerance, work)?;
         let (mut form, missed) = form_at_fold(core, work);
-        let blur = form.map_or(0.0, |form| (form.curvature * work.length.powi(2)).recip().abs());
-        let flat = h < FLAT * blur * (b.tp - a.tp).abs();
+        let bent = form.map_or(0.0, |form| form.curvature.abs() * work.length * work.length);
+        let flat = bent * h < FLAT * (b.tp - a.tp).abs();
         if flat || form.is_none_or(|form| form.order.is_none()) {
             let found = flat_fold(core, (a, b), h, (place.at, missed), work)?;
-            if let Some(flat) = found.filter(|flat| flat.order > 2) {
-                place = Located { at: flat.at, error: flat.error };
-                interpolate(a, b, h, bend(core, a, b), place.at, work);
-                core.correct(Constraint::Plane(a, place.at), work, Precision::Event)?;
+            if found.order != Some(2) {
+                place = Located { at: found.at, error: found.error };
+                // what stands at the place that the search took for it says nothing
                 let spread = form.map_or(0.0, |form| form.curvature.abs() + form.curvature_error);
-                let order = Some(flat.order);
-                form = Some(FoldForm { curvature: 0.0, curvature_error: spread, order });
-            } else {
-                place.error += missed * blur;
-                // back to the fold
-                interpolate(a, b, h, bend(core, a, b), place.at, work);
-                core.correct(Constraint::Plane(a, place.at), work, Precision::Event)?;
+                let curvature_error = if form.is_some() { spread } else { f64::INFINITY };
+                form = Some(FoldForm { curvature: 0.0, curvature_error, order: found.order });
             }
-        } else {
-            place.error += missed * blur;
+            interpolate(a, b, h, bend(core, a, b), place.at, work);
+            core.correct(Constraint::Plane(a, place.at), work, Precision::Event)?;
+        }
+        if missed > 0.0 && form.is_some_and(|form| form.order == Some(2)) {
+            place.error += missed / bent;
         }
         let eigenvectors = Eigenvector::real(work.tu.clone()).into_iter().collect();
         let detail = form.map_or(Detail::None, Detail::Fold);
