@@ -155,7 +155,7 @@ fn two_modes_with_the_symmetry_of_a_polygon() {
     }
 }
 
-/// A circle of branches: one stands for all. A polygon too weak to be seen beside rounding is none.
+/// A circle of branches: one stands for all.
 #[test]
 fn a_circle_of_branches_is_not_a_polygon() {
     let problem = DenseProblem::from_residual(2, &["p"], |u, p, r| {

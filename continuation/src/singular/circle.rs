@@ -94,7 +94,7 @@ impl<P: Problem> Reduced<'_, '_, '_, P> {
 
     fn separate_two(&mut self) -> Separated {
         let mut largest = 0.0_f64;
-        let mut least_tangential = f64::INFINITY;
+        let mut tangential = f64::INFINITY;
         let mut before: Option<Vec<Ray>> = None;
         let mut amplitude = LEAST;
         while amplitude <= MOST {
@@ -102,7 +102,7 @@ impl<P: Problem> Reduced<'_, '_, '_, P> {
             let spectrum = harmonics(&samples);
             let (signal, floor) = strength(&spectrum);
             let size = amplitude * amplitude;
-            (largest, least_tangential) = (amplitude, signal / size);
+            (largest, tangential) = (amplitude, signal / size);
             before = if signal > CLEAR * floor && signal > NOTHING * size {
                 let rays = self.rays(&samples, amplitude);
                 match (before, rays) {
@@ -119,7 +119,7 @@ impl<P: Problem> Reduced<'_, '_, '_, P> {
             };
             amplitude *= RATIO;
         }
-        if largest >= LARGE && least_tangential < NOTHING {
+        if largest >= LARGE && tangential < NOTHING {
             Separated::Circle
         } else {
             Separated::Unknown
