@@ -23,7 +23,19 @@ fn fig16() -> ContactProblem {
     ContactProblem::new(&shell, &groups, Mesh::uniform(100).unwrap()).unwrap()
 }
 
-// one test: other threads of the test runner would be counted too
+/// Steps of a motion, and what it allocates: the least of five times, as the test runner's own thread is
+/// counted too and may allocate once at any moment.
+fn counted(mut motion: impl FnMut() -> usize) -> (usize, usize) {
+    let counts = [(); 5].map(|()| {
+        let region = Region::new(ALLOCATOR);
+        let steps = motion();
+        (steps, region.change().allocations)
+    });
+    assert!(counts.iter().all(|(steps, _)| *steps == counts[0].0), "{counts:?}");
+    counts.into_iter().min().unwrap()
+}
+
+// one test: others would be counted too
 #[test]
 fn steps_of_a_motion_do_not_allocate() {
     let problem = fig16();
@@ -35,10 +47,11 @@ fn steps_of_a_motion_do_not_allocate() {
     let usual = RelaxationSettings::default();
     let closely = RelaxationSettings { accuracy: 0.005, ..usual };
     let counts = [usual, closely].map(|settings| {
-        let mut relaxation = Relaxation::new(&problem, settings);
-        let region = Region::new(ALLOCATOR);
-        assert_eq!(relaxation.from_fold(&problem, u, &p), Ok(Motion::Rest));
-        (relaxation.steps(), region.change().allocations)
+        counted(|| {
+            let mut relaxation = Relaxation::new(&problem, settings);
+            assert_eq!(relaxation.from_fold(&problem, u, &p), Ok(Motion::Rest));
+            relaxation.steps()
+        })
     });
     println!("{counts:?}");
     assert!(counts[1].0 > 2 * counts[0].0 && counts[1].1 == counts[0].1, "{counts:?}");
@@ -46,10 +59,11 @@ fn steps_of_a_motion_do_not_allocate() {
     let loaded = LoadedProblem::new(&problem, Device::DeadLoad).unwrap();
     let (x, p) = (loaded_start(&loaded, 1.0).unwrap(), loaded.parameters_at(1.5));
     let counts = [usual, closely].map(|settings| {
-        let mut relaxation = Relaxation::new(&loaded, settings);
-        let region = Region::new(ALLOCATOR);
-        assert_eq!(relaxation.from_state(&loaded, &x, &p), Ok(Motion::Rest));
-        (relaxation.steps(), region.change().allocations)
+        counted(|| {
+            let mut relaxation = Relaxation::new(&loaded, settings);
+            assert_eq!(relaxation.from_state(&loaded, &x, &p), Ok(Motion::Rest));
+            relaxation.steps()
+        })
     });
     println!("{counts:?}");
     assert!(counts[1].0 > counts[0].0 && counts[1].1 == counts[0].1, "{counts:?}");

@@ -9,13 +9,17 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 fn count(what: &str, mut action: impl FnMut()) {
     action();
-    let region = Region::new(ALLOCATOR);
-    action();
-    let change = region.change();
-    assert_eq!(change.allocations + change.reallocations, 0, "{what}: {change:?}");
+    // the test runner's own thread is counted too, and may allocate once at any moment
+    let counts = [(); 5].map(|()| {
+        let region = Region::new(ALLOCATOR);
+        action();
+        let change = region.change();
+        change.allocations + change.reallocations
+    });
+    assert!(counts.contains(&0), "{what}: {counts:?}");
 }
 
-// one test: other threads of the test runner would be counted too
+// one test: others would be counted too
 #[test]
 fn later_factorisations_and_eigenvalues_do_not_allocate() {
     let n = 144;
