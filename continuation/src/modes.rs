@@ -7,7 +7,7 @@
 //! spectrum; others by shift-invert Arnoldi about zero, which proves nothing: an eigenvalue far from
 //! zero with a large imaginary part can be missed.
 
-use crate::linalg::{Arnoldi, Dense, EigenSettings, Lanczos, Matrix, Spectrum};
+use crate::linalg::{Arnoldi, Dense, EigenSettings, Lanczos, Matrix, Spectrum, count_right};
 use crate::problem::{EvalError, Problem, Stability, check_finite, check_pattern};
 use crate::settings::Counting;
 
@@ -71,6 +71,9 @@ const FAST: f64 = 1e7;
 const SMALL: usize = 120;
 /// The same where they are asked for; `n³` operations a point, half a second at 400 unknowns.
 const FULL: usize = crate::linalg::MAX_SPECTRUM;
+
+/// Relative difference of two computations of one eigenvalue.
+const SAME: f64 = 1e-6;
 
 /// Solves after which the search for a few eigenvalues ends with what it has.
 const MOST_SOLVES: usize = 200;
@@ -171,6 +174,36 @@ impl<P: Problem> ModeSolver<P> {
             let mass = || self.mass.as_ref().map(dense);
             small.then(|| dense(jacobian).spectrum_with_errors(mass().as_ref()))?
         })
+    }
+
+    /// Unstable eigenvalues of a matrix that is too large for its full spectrum, where that is asked for,
+    /// and whether others lie on the imaginary axis; the pair nearest to that is added to `few` if it is
+    /// not there. `None` where it is not asked for, and where the count is not certain.
+    pub(crate) fn by_argument(
+        &mut self,
+        jacobian: &P::Jacobian,
+        few: &mut Vec<(f64, f64)>,
+    ) -> Option<(usize, bool)> {
+        if self.small < FULL || !self.mass_is_definite() {
+            return None;
+        }
+        let (n, mass) = (jacobian.dim(), self.mass.as_ref());
+        let found = count_right(jacobian, mass)?;
+        if let Some(omega) = found.pair {
+            let near = Arnoldi::new(n, 1).nearest_to_imaginary(jacobian, mass, omega);
+            let pair = near.and_then(|near| near.pairs.into_iter().find(|pair| pair.converged));
+            if let Some((re, im)) = pair.map(|pair| pair.value).filter(|(_, im)| *im > 0.0) {
+                let same = |(a, b): &(f64, f64)| (a - re).hypot(b - im) < SAME * re.hypot(im);
+                if !few.iter().any(same) {
+                    few.extend([(re, im), (re, -im)]);
+                }
+            }
+        }
+        if self.sense != Stability::EnergyHessian {
+            return Some((found.right, found.critical));
+        }
+        // how many are on the axis is not known
+        (!found.critical).then(|| (n - found.right, false))
     }
 
     /// Eigenvalues beyond this are those of fast modes, beside which the others keep their digits; only

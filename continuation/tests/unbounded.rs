@@ -100,3 +100,19 @@ fn a_branch_that_leaves_a_neighbourhood_of_zero_is_not_infinite() {
     let branch = follow(|u, p| u * (p - 1.0) - u * u * u - 1e-9, (-1e-9, 0.0), settings);
     assert_eq!(branch.stopped.reason, StopReason::Target, "{:?}", branch.stopped);
 }
+
+#[test]
+fn a_branch_that_turns_back_and_forth_without_end_is_called_a_cascade() {
+    let settings =
+        Settings { target: Some(2.0), max_points: 800, max_step: Some(0.1), ..Settings::default() };
+    let branch = follow(|u, p| p - u.sin(), (0.0, 0.0), settings.clone());
+    let stopped = &branch.stopped;
+    assert_eq!(stopped.reason, StopReason::MaxPoints);
+    let folds = branch.events.len();
+    let words = format!("800 points was reached in a cascade of folds that goes on: {folds} folds");
+    assert!(stopped.detail.contains(&words), "{}", stopped.detail);
+    // one that only needs more points is not
+    let settings = Settings { target: Some(1e3), max_step: Some(0.01), ..settings };
+    let branch = follow(|u, p| p - u, (0.0, 0.0), settings);
+    assert_eq!(branch.stopped.detail, "the limit of 800 points was reached");
+}

@@ -113,6 +113,12 @@ fn crosses(a: f64, b: f64) -> bool {
     a * b < 0.0 || (b == 0.0 && a != 0.0)
 }
 
+/// A pair that is unstable at `b` only, where no eigenvalue of `a` is and none was computed.
+fn appears(a: &State, b: &State) -> bool {
+    let stable = |x: &State| x.pair.is_nan() && x.count == Some(0);
+    (stable(a) && b.unstable_pairs == 1) || (stable(b) && a.unstable_pairs == 1)
+}
+
 /// A parameter's part of the tangent, relative to its range, below which the branch is vertical.
 const VERTICAL: f64 = 1e-9;
 /// Mismatch of a Hermite cubic above which the function is not resolved.
@@ -366,7 +372,7 @@ impl Detector {
             }
             pairs > 0
         } else {
-            change == 2 && !fold && !flip && crosses(a.pair, b.pair)
+            change == 2 && !fold && !flip && (crosses(a.pair, b.pair) || appears(a, b))
         };
         if hopf {
             self.found.push(Candidate::Hopf);

@@ -166,6 +166,16 @@ impl<A: Matrix> Matrix for Arrow<A> {
         self.borders.solve_with(&mut self.core, f, g, true, self.refine);
     }
 
+    fn entries(&self, visit: &mut dyn FnMut(usize, usize, f64)) -> bool {
+        for k in 0..self.m {
+            let last = self.n + k;
+            self.column(k).iter().enumerate().for_each(|(i, value)| visit(i, last, *value));
+            self.row(k).iter().enumerate().for_each(|(j, value)| visit(last, j, *value));
+            (0..self.m).for_each(|i| visit(self.n + i, last, self.corner(i, k)));
+        }
+        self.core.entries(visit)
+    }
+
     fn add_identity(&mut self, a: f64) -> bool {
         if !self.core.add_identity(a) {
             return false;

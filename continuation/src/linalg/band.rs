@@ -285,6 +285,14 @@ impl Matrix for Band {
         self.solve_with(x, true);
     }
 
+    fn entries(&self, visit: &mut dyn FnMut(usize, usize, f64)) -> bool {
+        for j in 0..self.n {
+            let (first, column) = self.column(j);
+            column.iter().enumerate().for_each(|(k, value)| visit(first + k, j, *value));
+        }
+        true
+    }
+
     fn add_identity(&mut self, a: f64) -> bool {
         for i in 0..self.n {
             self.add(i, i, a);

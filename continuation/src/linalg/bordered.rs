@@ -160,14 +160,22 @@ impl Bordered {
             self.trial[j] = 0.0;
         }
         for k in 0..self.m {
-            let (by_column, by_row) = (scale(self.column(k)), scale(self.row(k)));
-            (self.dense_scales[0][k], self.dense_scales[1][k]) = (by_row, by_column);
+            self.dense_scales[0][k] = scale(self.row(k));
+        }
+        for k in 0..self.m {
+            // a column may be nothing but its corner: the derivative by a parameter that acts on nothing
+            let corner = |i| (self.corner(i, k, false) * self.dense_scales[0][i]).abs();
+            let largest = (0..self.m).map(corner).fold(max_abs(self.column(k)), f64::max);
+            self.dense_scales[1][k] = if largest > 0.0 { unit / largest } else { 1.0 };
+        }
+        for k in 0..self.m {
+            let (by_row, by_column) = (self.dense_scales[0][k], self.dense_scales[1][k]);
             for i in 0..n {
                 copy.set(i, n + k, by_column * self.column(k)[i]);
                 copy.set(n + k, i, by_row * self.row(k)[i]);
             }
             for i in 0..self.m {
-                let scaled = scale(self.row(i)) * by_column;
+                let scaled = self.dense_scales[0][i] * by_column;
                 copy.set(n + i, n + k, scaled * self.corner(i, k, false));
             }
         }

@@ -280,6 +280,13 @@ impl Matrix for Dense {
         self.solve_with(x, true);
     }
 
+    fn entries(&self, visit: &mut dyn FnMut(usize, usize, f64)) -> bool {
+        for j in 0..self.n {
+            self.column(j).iter().enumerate().for_each(|(i, value)| visit(i, j, *value));
+        }
+        true
+    }
+
     fn add_identity(&mut self, a: f64) -> bool {
         self.entries.iter_mut().step_by(self.n + 1).for_each(|entry| *entry += a);
         true

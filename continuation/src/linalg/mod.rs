@@ -6,7 +6,8 @@
 //! [`Arrow`] (any of them with a few full rows and columns). [`Bordered`] solves
 //! `[A B; Cᵀ D] [x; y] = [f; g]` with one factorisation of the core `A`, accurately also where `A`
 //! is singular, as it is at folds and branch points. [`Lanczos`] and [`Arnoldi`] find a few
-//! eigenvalues of large pencils, symmetric or not, from solves.
+//! eigenvalues of large pencils, symmetric or not, from solves; [`count_right`] counts those with a
+//! positive real part, all of them.
 //!
 //! Pivots below a floor are replaced by it, and the factors then are those of a matrix within the
 //! floor of the given one; borders repair that. Solutions are refined once where their residual is
@@ -30,6 +31,7 @@ mod band;
 mod bordered;
 mod dense;
 mod eigen;
+mod half_plane;
 mod krylov;
 mod lanczos;
 mod ldlt;
@@ -50,6 +52,7 @@ pub use band::Band;
 pub use bordered::{Bordered, BorderedFacts};
 pub use dense::{Dense, MAX_SPECTRUM};
 pub use eigen::{EigenReport, EigenSettings};
+pub use half_plane::{HalfPlane, count_right};
 pub use lanczos::Lanczos;
 pub use sparse::{OutsidePattern, Sparse};
 pub use spectrum::Spectrum;
@@ -117,6 +120,12 @@ pub trait Matrix: Clone + Send {
     /// ([`crate::EvalError::OutsidePattern`]). `None` by default.
     fn misplaced(&self) -> Option<OutsidePattern> {
         None
+    }
+    /// Visits the entries that may differ from zero as (row, column, value), an entry in parts if that is
+    /// how it is kept, true; false (the default) where the type does not list them.
+    fn entries(&self, visit: &mut dyn FnMut(usize, usize, f64)) -> bool {
+        let _ = visit;
+        false
     }
     /// `A += a I`, true; false (the default) where the type does not do that.
     fn add_identity(&mut self, a: f64) -> bool {

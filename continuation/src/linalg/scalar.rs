@@ -1,7 +1,8 @@
-//! What Arnoldi's iteration needs of real and complex numbers.
+//! What Arnoldi's iteration and sparse elimination need of real and complex numbers.
 
 use faer::{Mat, c64};
-use std::ops::{Add, Mul, Sub};
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Sub};
 
 use super::vector;
 
@@ -9,7 +10,14 @@ use super::vector;
 pub(super) type SmallEigen = (Vec<c64>, Mat<c64>);
 
 pub(super) trait Scalar:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + 'static
+    Copy
+    + Debug
+    + PartialEq
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + 'static
 {
     const ZERO: Self;
     /// Whether eigenvalues come in conjugate pairs.
@@ -18,6 +26,9 @@ pub(super) trait Scalar:
     fn complex(self) -> c64;
     fn conj(self) -> Self;
     fn square(self) -> f64;
+    fn size(self) -> f64;
+    /// The number over its size; 1 for zero.
+    fn direction(self) -> Self;
     /// `xᴴ y`.
     fn dot(x: &[Self], y: &[Self]) -> Self;
     /// `y += a x`.
@@ -67,6 +78,14 @@ impl Scalar for f64 {
         self * self
     }
 
+    fn size(self) -> f64 {
+        self.abs()
+    }
+
+    fn direction(self) -> Self {
+        f64::from(vector::sign(self))
+    }
+
     fn dot(x: &[Self], y: &[Self]) -> Self {
         vector::dot(x, y)
     }
@@ -105,6 +124,15 @@ impl Scalar for c64 {
 
     fn square(self) -> f64 {
         self.norm_sqr()
+    }
+
+    fn size(self) -> f64 {
+        self.norm()
+    }
+
+    fn direction(self) -> Self {
+        let size = self.norm();
+        if size > 0.0 { self / size } else { Self::real(1.0) }
     }
 
     fn dot(x: &[Self], y: &[Self]) -> Self {

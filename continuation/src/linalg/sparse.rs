@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use faer::c64;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::{amd, colamd};
 
 use super::sparse_lu::{Columns, SparseLu};
-use super::vector::{add_scaled, max_abs, solve_refined};
+use super::vector::{add_scaled, max_abs, sign, solve_refined};
 use super::{Facts, MAX_GROWTH, Matrix, SymmetricPart};
 
 /// Part of the entries with a mirror image above which a pattern counts as symmetric.
@@ -32,7 +33,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 pub struct Sparse {
     pattern: Arc<Pattern>,
     values: Vec<f64>,
-    lu: SparseLu,
+    lu: SparseLu<f64>,
     row_scale: Vec<f64>,
     rhs: Vec<f64>,
     residual: Vec<f64>,
@@ -173,6 +174,48 @@ impl Sparse {
         self.lu.entries()
     }
 
+    /// Where columns start, and the rows of entries.
+    pub(super) fn pattern(&self) -> (&[usize], &[usize]) {
+        (&self.pattern.start, &self.pattern.rows)
+    }
+
+    /// Adds a matrix whose entries are in the pattern.
+    pub(super) fn add_entries(&mut self, other: &impl Matrix) {
+        other.entries(&mut |i, j, value| {
+            if let Some(at) = self.position(i, j) {
+                self.values[at] += value;
+            }
+        });
+    }
+
+    /// Sets the diagonal.
+    pub(super) fn fill_diagonal(&mut self, value: f64) {
+        self.pattern.diagonal.iter().for_each(|at| self.values[*at] = value);
+    }
+
+    /// Factors of complex matrices of the same pattern.
+    pub(super) fn complex_lu(&self) -> SparseLu<c64> {
+        self.lu.another(self.values.len())
+    }
+
+    /// Largest sum of magnitudes in a row.
+    pub(super) fn row_sums(&self) -> f64 {
+        let mut sums = vec![0.0; self.pattern.n];
+        for (i, value) in self.pattern.rows.iter().zip(&self.values) {
+            sums[*i] += value.abs();
+        }
+        max_abs(&sums)
+    }
+
+    /// `y = A x`.
+    pub(super) fn times(&self, x: &[c64], y: &mut [c64]) {
+        y.fill(c64::ZERO);
+        for (j, x) in x.iter().enumerate() {
+            let (rows, values) = self.column(j);
+            rows.iter().zip(values).for_each(|(i, value)| y[*i] += x * value);
+        }
+    }
+
     fn solve_with(&mut self, x: &mut [f64], transposed: bool) {
         let mut rhs = std::mem::take(&mut self.rhs);
         let mut residual = std::mem::take(&mut self.residual);
@@ -289,7 +332,7 @@ impl Matrix for Sparse {
         self.refine = found.perturbed == 0;
         self.growth = if self.norm > 0.0 { found.largest / self.norm } else { 1.0 };
         Facts {
-            det_sign: Some(found.det_sign),
+            det_sign: Some(sign(found.direction)),
             inertia: None,
             growth: self.growth,
             perturbed: found.perturbed,
@@ -302,6 +345,14 @@ impl Matrix for Sparse {
 
     fn solve_transpose(&mut self, x: &mut [f64]) {
         self.solve_with(x, true);
+    }
+
+    fn entries(&self, visit: &mut dyn FnMut(usize, usize, f64)) -> bool {
+        for j in 0..self.pattern.n {
+            let (rows, values) = self.column(j);
+            rows.iter().zip(values).for_each(|(i, value)| visit(*i, j, *value));
+        }
+        true
     }
 
     fn add_identity(&mut self, a: f64) -> bool {

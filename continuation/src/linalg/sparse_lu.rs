@@ -6,7 +6,7 @@
 //! factorisations keep pivots and pattern, without the search, as long as the pivots stay large
 //! enough (as KLU does, Davis & Palamadai Natarajan 2010).
 
-use super::vector::{pivot_or_floor, sign};
+use super::scalar::Scalar;
 
 /// A row that has no pivot yet.
 const NONE: usize = usize::MAX;
@@ -19,24 +19,25 @@ const KEPT: f64 = 0.01;
 
 /// A matrix by columns: entries `start[j]..start[j + 1]` of `rows` and `values` are column `j`.
 #[derive(Clone, Copy)]
-pub(super) struct Columns<'a> {
+pub(super) struct Columns<'a, T> {
     pub(super) start: &'a [usize],
     pub(super) rows: &'a [usize],
-    pub(super) values: &'a [f64],
+    pub(super) values: &'a [T],
 }
 
 /// What a factorisation found.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Found {
-    pub(super) det_sign: i8,
+pub(super) struct Found<T> {
+    /// The determinant over its magnitude.
+    pub(super) direction: T,
     pub(super) perturbed: usize,
     /// Largest entry of `U`.
     pub(super) largest: f64,
 }
 
-/// `P A Q = L U` with `L` of unit diagonal.
+/// `P A Q = L U` with `L` of unit diagonal, real or complex.
 #[derive(Debug, Clone)]
-pub(super) struct SparseLu {
+pub(super) struct SparseLu<T> {
     n: usize,
     /// Step `k` eliminates column `order[k]`.
     order: Vec<usize>,
@@ -45,12 +46,12 @@ pub(super) struct SparseLu {
     /// Row of the pivot of step `k`, and the step in which a row was the pivot.
     pivot_row: Vec<usize>,
     step: Vec<usize>,
-    lower: Triangle,
-    upper: Triangle,
-    pivots: Vec<f64>,
+    lower: Triangle<T>,
+    upper: Triangle<T>,
+    pivots: Vec<T>,
     /// Whether pivots and pattern are those of a complete factorisation.
     analysed: bool,
-    x: Vec<f64>,
+    x: Vec<T>,
     visited: Vec<bool>,
     stack: Vec<(usize, usize)>,
     reach: Vec<usize>,
@@ -58,13 +59,13 @@ pub(super) struct SparseLu {
 
 /// Columns of a factor without its diagonal.
 #[derive(Debug, Clone, Default)]
-struct Triangle {
+struct Triangle<T> {
     start: Vec<usize>,
     rows: Vec<usize>,
-    values: Vec<f64>,
+    values: Vec<T>,
 }
 
-impl Triangle {
+impl<T> Triangle<T> {
     fn new(n: usize, capacity: usize) -> Self {
         Self {
             start: Vec::with_capacity(n + 1),
@@ -80,7 +81,7 @@ impl Triangle {
         self.values.clear();
     }
 
-    fn push(&mut self, row: usize, value: f64) {
+    fn push(&mut self, row: usize, value: T) {
         self.rows.push(row);
         self.values.push(value);
     }
@@ -89,24 +90,24 @@ impl Triangle {
         self.start.push(self.rows.len());
     }
 
-    fn column(&self, k: usize) -> (&[usize], &[f64]) {
+    fn column(&self, k: usize) -> (&[usize], &[T]) {
         let range = self.start[k]..self.start[k + 1];
         (&self.rows[range.clone()], &self.values[range])
     }
 }
 
 /// `x[rows] -= a · values`.
-fn subtract(x: &mut [f64], a: f64, (rows, values): (&[usize], &[f64])) {
+fn subtract<T: Scalar>(x: &mut [T], a: T, (rows, values): (&[usize], &[T])) {
     for (i, v) in rows.iter().zip(values) {
-        x[*i] -= a * v;
+        x[*i] = x[*i] - a * *v;
     }
 }
 
-fn inner(x: &[f64], (rows, values): (&[usize], &[f64])) -> f64 {
-    rows.iter().zip(values).map(|(i, v)| x[*i] * v).sum()
+fn inner<T: Scalar>(x: &[T], (rows, values): (&[usize], &[T])) -> T {
+    rows.iter().zip(values).fold(T::ZERO, |sum, (i, v)| sum + x[*i] * *v)
 }
 
-impl SparseLu {
+impl<T: Scalar> SparseLu<T> {
     /// Storage for matrices of about `entries` entries whose columns are eliminated in this order.
     pub(super) fn new(order: Vec<usize>, prefer_diagonal: bool, entries: usize) -> Self {
         let n = order.len();
@@ -121,9 +122,9 @@ impl SparseLu {
             step: vec![NONE; n],
             lower: Triangle::new(n, 4 * entries),
             upper: Triangle::new(n, 4 * entries),
-            pivots: vec![1.0; n],
+            pivots: vec![T::real(1.0); n],
             analysed: false,
-            x: vec![0.0; n],
+            x: vec![T::ZERO; n],
             visited,
             stack: Vec::with_capacity(n),
             reach: Vec::with_capacity(n),
@@ -131,23 +132,24 @@ impl SparseLu {
     }
 
     /// Factors `a`; candidates for pivots are compared relative to the `scale` of their rows.
-    pub(super) fn factor(&mut self, a: Columns<'_>, scale: &[f64], floor: f64) -> Found {
+    pub(super) fn factor(&mut self, a: Columns<'_, T>, scale: &[f64], floor: f64) -> Found<T> {
         let mut found = None;
         if self.analysed {
             found = self.repeat(a, scale, floor);
         }
         let (perturbed, largest) = found.unwrap_or_else(|| self.analyse(a, scale, floor));
-        let signs = self.pivots.iter().fold(1, |s, pivot| s * sign(*pivot));
         let rows = parity(&self.pivot_row, &mut self.visited);
-        Found { det_sign: signs * rows * self.order_sign, perturbed, largest }
+        let sign = T::real(f64::from(rows * self.order_sign));
+        let direction = self.pivots.iter().fold(sign, |d, pivot| d * pivot.direction());
+        Found { direction, perturbed, largest }
     }
 
     /// Chooses pivots and finds the pattern.
-    fn analyse(&mut self, a: Columns<'_>, scale: &[f64], floor: f64) -> (usize, f64) {
+    fn analyse(&mut self, a: Columns<'_, T>, scale: &[f64], floor: f64) -> (usize, f64) {
         self.lower.clear();
         self.upper.clear();
         self.step.fill(NONE);
-        self.x.fill(0.0);
+        self.x.fill(T::ZERO);
         let (mut perturbed, mut largest) = (0, 0.0);
         let mut first_free = 0;
         for k in 0..self.n {
@@ -167,7 +169,7 @@ impl SparseLu {
                 let step = self.step[i];
                 let value = self.x[i];
                 if step == NONE {
-                    let size = value.abs() / scale[i];
+                    let size = value.size() / scale[i];
                     if size > best {
                         (pivot, best) = (i, size);
                     }
@@ -176,8 +178,8 @@ impl SparseLu {
                     }
                 } else {
                     self.upper.push(step, value);
-                    largest = f64::max(largest, value.abs());
-                    self.x[i] = 0.0;
+                    largest = f64::max(largest, value.size());
+                    self.x[i] = T::ZERO;
                     subtract(&mut self.x, value, self.lower.column(step));
                 }
             }
@@ -193,7 +195,7 @@ impl SparseLu {
             }
             let (value, replaced) = pivot_or_floor(self.x[pivot], floor);
             perturbed += usize::from(replaced);
-            largest = f64::max(largest, value.abs());
+            largest = f64::max(largest, value.size());
             self.pivots[k] = value;
             self.pivot_row[k] = pivot;
             self.step[pivot] = k;
@@ -201,9 +203,9 @@ impl SparseLu {
                 if self.step[i] == NONE {
                     self.lower.push(i, self.x[i] / value);
                 }
-                self.x[i] = 0.0;
+                self.x[i] = T::ZERO;
             }
-            self.x[pivot] = 0.0;
+            self.x[pivot] = T::ZERO;
             self.upper.close();
             self.lower.close();
         }
@@ -238,8 +240,8 @@ impl SparseLu {
     }
 
     /// Factors with the pivots and the pattern of before; `None` if a pivot has become small.
-    fn repeat(&mut self, a: Columns<'_>, scale: &[f64], floor: f64) -> Option<(usize, f64)> {
-        self.x.fill(0.0); // indexed by steps here
+    fn repeat(&mut self, a: Columns<'_, T>, scale: &[f64], floor: f64) -> Option<(usize, f64)> {
+        self.x.fill(T::ZERO); // indexed by steps here
         let (mut perturbed, mut largest) = (0, 0.0);
         for k in 0..self.n {
             let column = self.order[k];
@@ -248,46 +250,46 @@ impl SparseLu {
             }
             for at in self.upper.start[k]..self.upper.start[k + 1] {
                 let step = self.upper.rows[at];
-                let value = std::mem::take(&mut self.x[step]);
+                let value = std::mem::replace(&mut self.x[step], T::ZERO);
                 self.upper.values[at] = value;
-                largest = f64::max(largest, value.abs());
+                largest = f64::max(largest, value.size());
                 subtract(&mut self.x, value, self.lower.column(step));
             }
-            let raw = std::mem::take(&mut self.x[k]);
+            let raw = std::mem::replace(&mut self.x[k], T::ZERO);
             let (value, replaced) = pivot_or_floor(raw, floor);
-            let size = raw.abs() / scale[self.pivot_row[k]];
+            let size = raw.size() / scale[self.pivot_row[k]];
             let mut best = 0.0;
             for at in self.lower.start[k]..self.lower.start[k + 1] {
                 let step = self.lower.rows[at];
-                let below = std::mem::take(&mut self.x[step]);
-                best = f64::max(best, below.abs() / scale[self.pivot_row[step]]);
+                let below = std::mem::replace(&mut self.x[step], T::ZERO);
+                best = f64::max(best, below.size() / scale[self.pivot_row[step]]);
                 self.lower.values[at] = below / value;
             }
             if !(size >= KEPT * best && size.is_finite()) {
                 return None;
             }
             perturbed += usize::from(replaced);
-            largest = f64::max(largest, value.abs());
+            largest = f64::max(largest, value.size());
             self.pivots[k] = value;
         }
         Some((perturbed, largest))
     }
 
     /// `x ← A⁻¹ x` with scratch space of the same length.
-    pub(super) fn solve(&self, x: &mut [f64], z: &mut [f64]) {
+    pub(super) fn solve(&self, x: &mut [T], z: &mut [T]) {
         for k in 0..self.n {
             z[k] = x[self.pivot_row[k]];
         }
         for k in 0..self.n {
             let value = z[k];
-            if value != 0.0 {
+            if value != T::ZERO {
                 subtract(z, value, self.lower.column(k));
             }
         }
         for k in (0..self.n).rev() {
             let value = z[k] / self.pivots[k];
             z[k] = value;
-            if value != 0.0 {
+            if value != T::ZERO {
                 subtract(z, value, self.upper.column(k));
             }
         }
@@ -297,7 +299,7 @@ impl SparseLu {
     }
 
     /// `x ← A⁻ᵀ x` with scratch space of the same length.
-    pub(super) fn solve_transpose(&self, x: &mut [f64], z: &mut [f64]) {
+    pub(super) fn solve_transpose(&self, x: &mut [T], z: &mut [T]) {
         for k in 0..self.n {
             z[k] = x[self.order[k]];
         }
@@ -305,23 +307,41 @@ impl SparseLu {
             z[k] = (z[k] - inner(z, self.upper.column(k))) / self.pivots[k];
         }
         for k in (0..self.n).rev() {
-            z[k] -= inner(z, self.lower.column(k));
+            z[k] = z[k] - inner(z, self.lower.column(k));
         }
         for k in 0..self.n {
             x[self.pivot_row[k]] = z[k];
         }
     }
 
-    /// Number of negative pivots, where all lie on the diagonal.
-    pub(super) fn negative_pivots(&self) -> Option<usize> {
-        let diagonal = self.pivot_row == self.order;
-        diagonal.then(|| self.pivots.iter().filter(|pivot| **pivot < 0.0).count())
+    /// Factors of matrices of the same pattern, with other numbers.
+    pub(super) fn another<S: Scalar>(&self, entries: usize) -> SparseLu<S> {
+        SparseLu::new(self.order.clone(), self.prefer_diagonal, entries)
+    }
+
+    /// Multiplications of the latest factorisation.
+    pub(super) fn work(&self) -> f64 {
+        let length = |step: &usize| self.lower.start[step + 1] - self.lower.start[*step];
+        self.upper.rows.iter().map(|step| length(step) as f64).sum()
     }
 
     /// Number of entries of both factors.
     pub(super) fn entries(&self) -> usize {
         self.lower.rows.len() + self.upper.rows.len() + self.n
     }
+}
+
+impl SparseLu<f64> {
+    /// Number of negative pivots, where all lie on the diagonal.
+    pub(super) fn negative_pivots(&self) -> Option<usize> {
+        let diagonal = self.pivot_row == self.order;
+        diagonal.then(|| self.pivots.iter().filter(|pivot| **pivot < 0.0).count())
+    }
+}
+
+/// A pivot, or one of magnitude `floor` in its place. Also returns whether it was replaced.
+fn pivot_or_floor<T: Scalar>(pivot: T, floor: f64) -> (T, bool) {
+    if pivot.size() >= floor { (pivot, false) } else { (pivot.direction() * T::real(floor), true) }
 }
 
 /// Sign of a permutation; `visited` is all false before and after.

@@ -2,7 +2,8 @@
 //!
 //! From the inertia where the factors report it (symmetric matrices, in any storage), from a
 //! symmetric part that is definite, or from the full spectrum where that is affordable: all three
-//! are certain. Else from a few eigenvalues by iteration, which is a lower bound and no more.
+//! are certain. Of larger matrices by the argument principle, where that is asked for. Else from a few
+//! eigenvalues by iteration, which is a lower bound and no more.
 
 use super::State;
 use crate::linalg::Matrix;
@@ -117,9 +118,14 @@ impl<P: Problem> StabilityCount<P> {
         } else if self.sense != Stability::None {
             // more than twice as many as were unstable last, so that the unstable ones are among them
             let count = FEW.max(2 * self.last + FEW / 2).min(MOST).max(self.wanted);
-            let few = self.solver.few(problem, jacobian, count);
+            let mut few = self.solver.few(problem, jacobian, count);
+            let all = self.solver.by_argument(jacobian, &mut few);
             self.read(&few, (energy, f64::INFINITY), x);
             self.last = x.count.unwrap_or(0);
+            // a count that says less than was found is not believed
+            if let Some((all, critical)) = all.filter(|(all, _)| *all >= self.last) {
+                (x.count, x.critical, x.certified) = (Some(all), critical, true);
+            }
             self.solver.pick(few, &mut x.eigenvalues);
         }
         if self.sense != Stability::None {

@@ -61,7 +61,7 @@ impl<P: Problem> Tracer<'_, P> {
         )
     }
 
-    fn place(&self) -> (&'static str, f64) {
+    pub(super) fn place(&self) -> (&'static str, f64) {
         (self.core.problem.parameters()[self.core.which.0].name, self.current.p)
     }
 }

@@ -23,6 +23,7 @@ mod closure;
 mod examine;
 mod input;
 mod narrow;
+mod out_of_points;
 mod plateau;
 mod restart;
 mod snapshot;
@@ -356,7 +357,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
     /// One accepted step: fills the queue, or ends the trace.
     fn advance(&mut self) {
         if self.emitted >= self.settings.max_points {
-            let detail = format!("the limit of {} points was reached", self.settings.max_points);
+            let detail = self.out_of_points();
             return self.end(StopReason::MaxPoints, detail);
         }
         if let Some(departure) = self.departure.take() {

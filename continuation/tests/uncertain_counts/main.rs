@@ -272,18 +272,36 @@ fn crossings_beyond_the_target() {
     in_every_storage(&c, &[Vec::new(), Vec::new()], "beyond the target");
 }
 
-#[test]
-fn random_crossings() {
+fn random_problems(numbers: std::ops::Range<usize>) {
     let mut random = Random(1);
-    for k in 0..60 {
+    for k in 0..numbers.end {
         let n = if k % 20 == 0 { 400 } else { 41 + (60.0 * random.next()) as usize };
         let c = random.crossings(n);
         let layers = match k % 3 {
             0 => [Vec::new(), Vec::new()],
             kind => random.layers(n, kind == 1),
         };
-        in_every_storage(&c, &layers, &format!("problem {k}, {n} unknowns"));
+        if numbers.contains(&k) {
+            in_every_storage(&c, &layers, &format!("problem {k}, {n} unknowns"));
+        }
     }
+}
+
+#[test]
+fn random_crossings() {
+    random_problems(0..60);
+}
+
+/// At an exactly singular matrix six pivots vanish, and the column of the parameter as well.
+#[test]
+fn pivots_that_vanish_together() {
+    random_problems(314..315);
+}
+
+#[test]
+#[ignore = "slow: 3000 branches, some minutes"]
+fn a_thousand_random_crossings() {
+    random_problems(0..1000);
 }
 
 #[test]
