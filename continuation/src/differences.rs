@@ -30,10 +30,22 @@ const ENOUGH: f64 = 1e-11;
 const NOISE: f64 = 1e-4;
 /// Disagreement, relative to the variation over the places, above which a step resolves nothing.
 const UNRESOLVED: f64 = 0.02;
+/// Truncation below which a function is smooth on the scale of a step, and slope in the middle from which
+/// on it is straight there, relative to the mean slope.
+const SMOOTH: f64 = 1e-6;
+const STRAIGHT: f64 = 0.5;
 /// A value smaller than this part of the largest unknown may be rounding.
 const SMALL: f64 = 1e-4;
+/// Whether a value is so small beside its unit that its last place says nothing.
+pub(crate) fn is_small(value: f64, unit: f64) -> bool {
+    value.abs() < VANISHES * unit
+}
+
 /// Moves of all arguments by which rounding is measured.
 const MOVES: usize = 3;
+
+/// Unknowns below this may all be rounding; if they are not, shorter steps are found.
+pub(crate) const VANISHES: f64 = 1e-10;
 
 /// A rung of the ladder that is not known.
 const UNKNOWN: i32 = i32::MAX;
@@ -120,6 +132,29 @@ impl Ladder {
         }
     }
 
+    /// Rounding errors where some arguments are so small that moving them by their last place tells nothing:
+    /// those of arguments of the size of their units, in rows that are nearly straight over a part of these:
+    /// of others the scale is not known. A displacement that is zero is added to a place that is not. `f` evaluates with all of them
+    /// moved by a multiple of their units, with the signs of the first move.
+    pub(crate) fn small_arguments(&mut self, mut f: impl FnMut(f64, &mut [f64])) {
+        let h = f64::from(FIRST).exp2();
+        for (place, value) in PLACES.into_iter().zip(&mut self.values) {
+            f(place * h, value);
+        }
+        for row in 0..self.noise.len() {
+            let v: [f64; 6] = std::array::from_fn(|k| self.values[k][row]);
+            let (g, noise) = (self.centre[row], self.noise[row]);
+            if g.is_finite() && v.iter().all(|v| v.is_finite()) {
+                let smooth = estimate(g, v, h, noise).filter(|found| {
+                    let straight = found.value.abs() >= STRAIGHT * found.size;
+                    found.resolved && straight && found.truncation <= SMOOTH * found.size
+                });
+                let slope = smooth.map_or(0.0, |found| found.value.abs());
+                self.noise[row] = noise.max(f64::EPSILON * slope);
+            }
+        }
+    }
+
     /// The value in the middle.
     pub(crate) fn value(&self) -> &[f64] {
         &self.centre
@@ -171,7 +206,13 @@ impl Ladder {
         let g = self.centre[row];
         if g.is_finite() && v.iter().all(|v| *v == g) {
             // nothing to see: a derivative below the rounding of the value itself
-            let error = f64::EPSILON * g.abs() / h;
+            let error = self.noise[row].max(f64::EPSILON * g.abs()) / h;
+            if self.resolved[row] && self.size[row] > 0.0 {
+                // seen on a longer step: what is added to the argument absorbs this one
+                self.low[row] =
+                    if self.low[row] == UNKNOWN { rung } else { self.low[row].max(rung) };
+                return true;
+            }
             if error < self.error[row] {
                 (self.derivative[row], self.error[row], self.size[row]) = (0.0, error, 0.0);
             }
@@ -371,6 +412,17 @@ pub(crate) fn along<P: Problem + ?Sized>(
         evaluate(&place, &values, r);
     });
     values.copy_from_slice(p);
+    let largest = crate::linalg::max_abs(u);
+    let size = |u: f64| if largest < VANISHES { unit } else { magnitude(u, largest) };
+    if u.iter().any(|u| is_small(*u, size(*u))) {
+        ladder.small_arguments(|multiple, r| {
+            for (k, (place, u)) in place.iter_mut().zip(u).enumerate() {
+                *place =
+                    u + if is_small(*u, size(*u)) { multiple * sign(k, 1) * size(*u) } else { 0.0 };
+            }
+            evaluate(&place, &values, r);
+        });
+    }
     ladder.unit.fill(unit);
     ladder.climb(|multiple, r| {
         let h = multiple * unit;

@@ -1,6 +1,6 @@
 //! Problems from their residual alone, in every storage.
 
-use crate::differences::{Ladder, magnitude, moved};
+use crate::differences::{Ladder, VANISHES, is_small, magnitude, moved, sign};
 use crate::linalg::{Band, Dense, Matrix, OutsidePattern, Sparse, max_abs};
 use crate::problem::{EvalError, ParamId, Parameter, Problem, Stability, check_finite};
 use std::cell::RefCell;
@@ -96,9 +96,6 @@ struct Scratch {
     unit: Vec<f64>,
     ladder: Ladder,
 }
-
-/// Unknowns below this may all be rounding; if they are not, shorter steps are found.
-const VANISHES: f64 = 1e-10;
 
 mod sealed {
     use crate::linalg::{Band, Dense, Matrix, Sparse};
@@ -307,6 +304,16 @@ impl<J, F: Fn(&[f64], &[f64], &mut [f64])> ResidualProblem<J, F> {
         for (unit, u) in unit.iter_mut().zip(u) {
             // a state that vanishes but for rounding has no magnitude
             *unit = if largest < VANISHES { 1.0 } else { magnitude(*u, largest) };
+        }
+        if u.iter().zip(&*unit).any(|(u, unit)| is_small(*u, *unit)) {
+            ladder.small_arguments(|multiple, r| {
+                for (k, ((place, u), unit)) in place.iter_mut().zip(u).zip(&*unit).enumerate() {
+                    let small = is_small(*u, *unit);
+                    *place = u + if small { multiple * sign(k, 1) * unit } else { 0.0 };
+                }
+                (self.f)(place, values, r);
+            });
+            place.copy_from_slice(u);
         }
         check_finite(ladder.value())
     }

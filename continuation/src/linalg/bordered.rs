@@ -26,6 +26,8 @@ const NOISE: f64 = 64.0;
 /// Largest dimension, borders included, up to which the sign of a determinant that the Schur
 /// complements do not tell is that of a dense copy: milliseconds.
 const MAX_DENSE: usize = 200;
+/// Sweeps in which the scales of its borders are found.
+const SWEEPS: usize = 3;
 
 /// What the factorisation of a bordered matrix learned.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -152,21 +154,29 @@ impl Bordered {
         let mut copy = self.dense.take().unwrap_or_else(|| Box::new(Dense::new(size)));
         copy.set_zero();
         let unit = if self.core_norm > 0.0 { self.core_norm } else { 1.0 };
-        let scale = |x: &[f64]| Some(max_abs(x)).filter(|m| *m > 0.0).map_or(1.0, |m| unit / m);
         self.trial[..n].fill(0.0);
         for j in 0..n {
             self.trial[j] = 1.0;
             a.mul(&self.trial[..n], &mut copy.column_mut(j)[..n]);
             self.trial[j] = 0.0;
         }
-        for k in 0..self.m {
-            self.dense_scales[0][k] = scale(self.row(k));
-        }
-        for k in 0..self.m {
-            // a column may be nothing but its corner: the derivative by a parameter that acts on nothing
-            let corner = |i| (self.corner(i, k, false) * self.dense_scales[0][i]).abs();
-            let largest = (0..self.m).map(corner).fold(max_abs(self.column(k)), f64::max);
-            self.dense_scales[1][k] = if largest > 0.0 { unit / largest } else { 1.0 };
+        // entries no larger than the core's, in the corner too: a column may be nothing else, where a
+        // parameter acts on nothing, and a row where nothing moves
+        self.dense_scales[1].fill(1.0);
+        for sweep in 0..2 * SWEEPS {
+            for k in 0..self.m {
+                let by_row = sweep % 2 == 0;
+                let [rows, columns] = &self.dense_scales;
+                let (own, others) =
+                    if by_row { (self.row(k), columns) } else { (self.column(k), rows) };
+                let corner = |(i, scale): (usize, &f64)| {
+                    let (row, column) = if by_row { (k, i) } else { (i, k) };
+                    (self.corner(row, column, false) * scale).abs()
+                };
+                let largest = others.iter().enumerate().map(corner).fold(max_abs(own), f64::max);
+                let scale = if largest > 0.0 { unit / largest } else { 1.0 };
+                self.dense_scales[usize::from(!by_row)][k] = scale;
+            }
         }
         for k in 0..self.m {
             let (by_row, by_column) = (self.dense_scales[0][k], self.dense_scales[1][k]);

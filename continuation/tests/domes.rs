@@ -1,0 +1,142 @@
+//! Star domes of elastic bars: double branch points with the symmetry of a polygon, in a problem of
+//! mechanics, from the residual alone.
+
+#![allow(clippy::unwrap_used)]
+
+use continuation::{DenseProblem, EventKind, Problem, Settings, Stability, StopReason, Tracer};
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+type Node = [f64; 3];
+
+/// Apex, `n` nodes of a ring, and `n` supports between their directions; every node carries the load
+/// `p`, the ring's a tenth of it.
+struct Dome {
+    free: Vec<Node>,
+    fixed: Vec<Node>,
+    bars: Vec<(usize, usize, f64)>,
+}
+
+impl Dome {
+    fn new(n: usize) -> Self {
+        let at = |radius: f64, height: f64, k: f64| {
+            let (sin, cos) = (TAU * k / n as f64).sin_cos();
+            [radius * cos, radius * sin, height]
+        };
+        let mut free = vec![[0.0, 0.0, 0.35]];
+        free.extend((0..n).map(|k| at(1.0, 0.25, k as f64)));
+        let fixed: Vec<Node> = (0..n).map(|k| at(1.75, 0.0, k as f64 + 0.5)).collect();
+        let mut pairs: Vec<(usize, usize)> = Vec::new();
+        for k in 0..n {
+            let next = 1 + (k + 1) % n;
+            pairs.extend([(0, 1 + k), (1 + k, next), (1 + k, n + 1 + k), (next, n + 1 + k)]);
+        }
+        let place = |i: usize| if i <= n { free[i] } else { fixed[i - n - 1] };
+        let bars = pairs.iter().map(|&(i, j)| (i, j, distance(place(i), place(j)))).collect();
+        Dome { free, fixed, bars }
+    }
+
+    fn residual(&self, u: &[f64], p: f64, r: &mut [f64]) {
+        let n = self.free.len();
+        let place = |i: usize| -> Node {
+            if i < n {
+                std::array::from_fn(|c| self.free[i][c] + u[3 * i + c])
+            } else {
+                self.fixed[i - n]
+            }
+        };
+        r.fill(0.0);
+        for i in 0..n {
+            r[3 * i + 2] = if i == 0 { p } else { 0.1 * p };
+        }
+        for &(i, j, rest) in &self.bars {
+            let (a, b) = (place(i), place(j));
+            let length = distance(a, b);
+            // Green's strain
+            let force = 0.5 * (length * length / (rest * rest) - 1.0) / rest;
+            for c in 0..3 {
+                let pull = force * (b[c] - a[c]);
+                if i < n {
+                    r[3 * i + c] -= pull;
+                }
+                if j < n {
+                    r[3 * j + c] += pull;
+                }
+            }
+        }
+    }
+}
+
+fn distance(a: Node, b: Node) -> f64 {
+    (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// All displacements are zero at first: the places that they are added to are rounded, and moving a zero
+/// by its last place does not show it.
+#[test]
+fn the_jacobian_of_the_unloaded_dome() {
+    for n in 3..=9 {
+        let dome = Dome::new(n);
+        let size = 3 * dome.free.len();
+        let at = |k: usize, h: f64| {
+            let (mut u, mut r) = (vec![0.0; size], vec![0.0; size]);
+            u[k] = h;
+            dome.residual(&u, 0.0, &mut r);
+            r
+        };
+        // of third degree: differences over long steps are exact but for rounding
+        let column = |k: usize| {
+            let [a, b, c, d] = [0.5, -0.5, 1.0, -1.0].map(|h| at(k, h));
+            (0..size).map(|i| (8.0 * (a[i] - b[i]) - (c[i] - d[i])) / 6.0).collect::<Vec<f64>>()
+        };
+        let columns: Vec<Vec<f64>> = (0..size).map(column).collect();
+        let problem =
+            DenseProblem::from_residual(size, &["p"], move |u, p, r| dome.residual(u, p[0], r));
+        let mut found = problem.new_jacobian();
+        problem.jacobian(&vec![0.0; size], &[0.0], &mut found).unwrap();
+        for (k, column) in columns.iter().enumerate() {
+            for (i, exact) in column.iter().enumerate() {
+                let off = (found.get(i, k) - exact).abs();
+                assert!(off < 1e-11, "{n} ({i}, {k}): {} {exact}", found.get(i, k));
+            }
+        }
+    }
+}
+
+#[test]
+fn double_branch_points_of_star_domes() {
+    for n in [5, 6, 7] {
+        let dome = Dome::new(n);
+        let size = 3 * dome.free.len();
+        let problem =
+            DenseProblem::from_residual(size, &["p"], move |u, p, r| dome.residual(u, p[0], r))
+                .with_stability(Stability::EnergyHessian)
+                .boxed();
+        let settings = Settings {
+            target: Some(0.03),
+            max_step: Some(0.01),
+            max_points: 400,
+            ..Settings::default()
+        };
+        let trunk = Tracer::new(&problem, "p", &vec![0.0; size], &[0.0], settings)
+            .unwrap()
+            .run(&mut |_| ControlFlow::Continue(()));
+        assert_eq!(trunk.stopped.reason, StopReason::Target, "{n}: {:?}", trunk.stopped);
+        assert!(trunk.doubts.is_empty(), "{n}: {:?}", trunk.doubts);
+        let double = trunk.events.iter().filter(|event| {
+            event.unstable_before.zip(event.unstable_after).is_some_and(|(a, b)| a.abs_diff(b) == 2)
+        });
+        assert!(double.clone().count() >= 4, "{n}");
+        for event in double {
+            assert_eq!(event.kind, EventKind::BranchPoint);
+            assert_eq!(event.crossing().unwrap().multiplicity, 2, "{n}: {}", event.p);
+        }
+        // turned over, the dome does the same under the opposite load
+        let mirrored = trunk.events.iter().zip(trunk.events.iter().rev());
+        for (one, other) in mirrored {
+            let allowed = one.error_estimate + other.error_estimate + 1e-12;
+            assert!((one.p + other.p).abs() <= allowed, "{n}: {} {}", one.p, other.p);
+            assert_eq!(one.kind, other.kind, "{n}");
+        }
+    }
+}
