@@ -127,7 +127,7 @@ const MAX_MISMATCH: f64 = 0.35;
 const NEGLIGIBLE: f64 = 1e-7;
 /// Changes of uncertain counts that are followed up in vain before they are only noted: each costs a
 /// score of short steps.
-const MOST_FUTILE: usize = 4;
+const MOST_FUTILE: usize = 12;
 /// Part of a step within which an extremum is at a pitchfork met from its side: far less than two
 /// special points would be apart, far more than a cubic is wrong in a step that resolves both.
 const SAME_PLACE: f64 = 0.02;

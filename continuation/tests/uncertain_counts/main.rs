@@ -298,6 +298,12 @@ fn pivots_that_vanish_together() {
     random_problems(314..315);
 }
 
+/// Counts that change in vain in four places before two crossings in the last step.
+#[test]
+fn vain_searches_before_crossings() {
+    random_problems(700..701);
+}
+
 #[test]
 #[ignore = "slow: 3000 branches, some minutes"]
 fn a_thousand_random_crossings() {
