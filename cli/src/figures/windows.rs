@@ -88,7 +88,7 @@ fn of_class(traced: &Traced, scanned: &Scanned, n: usize, parity: Parity) -> Vec
             push(&mut found, point.p, unstable);
         }
         let here = scanned.events.iter().filter(|event| event.after_point == k);
-        for event in here.filter(|event| (event.n, event.parity) == (n, parity)) {
+        for event in here.filter(|event| (event.n, event.parity) == (n, Some(parity))) {
             let now = event.modes_after > 0;
             if now && !inside {
                 found.push(new(n, parity, true));

@@ -6,7 +6,7 @@
 //! which have the same numbers, one is followed.
 
 use super::diagram::DiagramProgress;
-use super::waves::Waves;
+use super::stability::Stability;
 use super::{Progress, RunError, contact, two_plates};
 use crate::case::{ContactCase, ResolvedCase};
 use crate::output::{BranchRecord, From, Symmetry, TraceResult};
@@ -232,6 +232,17 @@ impl Search<'_, '_> {
     /// Adds a branch to what was found, and to the forks that it meets.
     fn take(&mut self, branch: Branch, mut from: From, depth: usize) {
         let id = self.next_id();
+        // counts first: they put special points among those that the branch has
+        let (done, observer) = (self.next_id(), &mut *self.observer);
+        let mut stopped = false;
+        let mut traced = ContactBranch::new(branch.clone(), self.zero_force);
+        let stability = Stability::of_whole(self.case, self.problem, &mut traced, &mut |branch| {
+            let wish = observer(DiagramProgress { branches: done, waiting: 0, branch });
+            stopped |= wish.is_break();
+            wish
+        });
+        self.out.interrupted |= stopped;
+        self.out.waves += stability.waves() + stability.missed();
         let mut ends = vec![(&branch.stopped, branch.points.last())];
         ends.extend(branch.began.as_ref().map(|began| (began, branch.points.first())));
         for (stop, point) in ends {
@@ -253,7 +264,7 @@ impl Search<'_, '_> {
                 from = From::Switch { branch: fork.branch, event: fork.event };
                 fork.begun.push(id);
             } else {
-                fork.ended.push((id, point.event));
+                fork.ended.push((id, point.event.map(|event| stability.renumbered(event))));
             }
         }
         let complete = branch.is_complete();
@@ -263,19 +274,8 @@ impl Search<'_, '_> {
         let last = branch.points.len().saturating_sub(1);
         self.out.further += inner.filter(|event| event.point > 0 && event.point < last).count();
         let began = branch.began.as_ref().map(|stop| stop.reason);
-        let traced = ContactBranch::new(branch.clone(), self.zero_force);
-        let done = self.next_id();
-        let observer = &mut *self.observer;
-        let mut stopped = false;
-        let waves = Waves::of(self.case, self.problem, &branch, &mut |branch| {
-            let wish = observer(DiagramProgress { branches: done, waiting: 0, branch });
-            stopped |= wish.is_break();
-            wish
-        });
-        self.out.interrupted |= stopped;
-        self.out.waves += waves.record().not_located;
         let (trace, curve): (TraceResult, Curve) =
-            two_plates::beside_symmetric(self.case, &traced, &waves);
+            two_plates::on_diagram(self.case, &traced, &stability);
         self.out.branches.push(BranchRecord {
             id,
             from,

@@ -211,20 +211,20 @@ pub(crate) fn run_diagram(
         }
         ProblemCase::TwoPlates(plates) => {
             let name = plates.parameter();
-            let exploration = explore(two_plates::settings(case, name), keep, observer);
+            let exploration = explore(two_plates::settings(case, name), keep, &mut *observer);
             let explored = two_plates::visit(case, plates, exploration)?;
             let (diagram, seconds) = explored.map_err(|error| match error {
                 DiagramError::Trace(detail) => contact::no_start(case, detail),
                 error => RunError::Diagram { case: case.name.clone(), error },
             })?;
-            let x = if name == "z0" { "half the plate distance z₀/R₀" } else { name };
-            let mut zero = None;
-            Ok(result(case, diagram, seconds, (x, "force F/√(χ k_b)"), &mut |branch| {
-                let traced = ContactBranch::new(branch, zero);
-                zero = traced.zero_force;
-                let (trace, curve) = two_plates::on_diagram(case, &traced);
-                Presented { trace, curve, stability: Stability::default() }
-            }))
+            let scanning = Instant::now();
+            let mut explored = two_plates::visit(
+                case,
+                plates,
+                OfTwoPlates { case, diagram, seconds, name, observer },
+            )?;
+            explored.seconds += scanning.elapsed().as_secs_f64();
+            Ok(explored)
         }
         ProblemCase::RingLoad(ring) => {
             let ring_load::Start { problem, u, p } = ring_load::start(case, ring)?;
@@ -279,6 +279,40 @@ pub(crate) fn run_diagram(
                 Presented { trace, curve, stability: Stability::default() }
             }))
         }
+    }
+}
+
+/// The branches of a diagram between two plates, as plain numbers with their modes.
+struct OfTwoPlates<'o, 'c> {
+    case: &'c ResolvedCase,
+    diagram: Diagram,
+    seconds: f64,
+    name: &'static str,
+    observer: &'o mut Observer<'c>,
+}
+
+impl WithPlates for OfTwoPlates<'_, '_> {
+    type Output = DiagramResult;
+
+    fn with<P: BetweenPlates>(self, problem: &P, _: &[f64], _: &[f64]) -> DiagramResult {
+        let OfTwoPlates { case, diagram, seconds, name, observer } = self;
+        let x = if name == "z0" { "half the plate distance z₀/R₀" } else { name };
+        let (mut zero, mut waves, mut done) = (None, 0, 0);
+        let mut waiting = diagram.branches.len();
+        let axes = (x, "force F/√(χ k_b)");
+        let mut explored = result(case, diagram, seconds, axes, &mut |branch| {
+            let mut traced = ContactBranch::new(branch, zero);
+            zero = traced.zero_force;
+            (done, waiting) = (done + 1, waiting - 1);
+            let stability = Stability::of_whole(case, problem, &mut traced, &mut |branch| {
+                observer(DiagramProgress { branches: done, waiting, branch })
+            });
+            waves += stability.waves() + stability.missed();
+            let (trace, curve) = two_plates::on_diagram(case, &traced, &stability);
+            Presented { trace, curve, stability }
+        });
+        with_asymmetric(&mut explored, asymmetric::Asymmetric::default(), waves);
+        explored
     }
 }
 

@@ -14,7 +14,6 @@ mod stability;
 mod states;
 mod sweep;
 mod two_plates;
-mod waves;
 mod ways;
 
 pub(crate) use contact::{branch as contact_branch, result as contact_result};

@@ -4,8 +4,12 @@ use super::{Observer, Progress};
 use crate::case::{ResolvedCase, StabilityCase};
 use crate::output::{Cell, ModeRecord, ShapeRecord, StabilityRecord};
 use crate::pictures::Examined;
-use continuation::{Branch, Event, EventKind, Point, Problem, StopReason};
-use shell_contact::modes::{ModeShape, Scan, ScanSettings, Scanned, SymmetryBreaking, scan_branch};
+use continuation::{Branch, Event, EventKind, Point, StopReason};
+use shell_contact::device::Loading;
+use shell_contact::modes::{
+    ModeShape, Parity, Scan, ScanSettings, Scanned, SymmetryBreaking, WholeShell, scan_branch,
+    scan_whole_branch,
+};
 use shell_contact::{ContactBranch, ContactProblem};
 
 /// Kind of the states at which a mode without the branch's symmetries turns.
@@ -24,8 +28,15 @@ pub(super) struct Stability {
     renumbered: Vec<usize>,
     missed: usize,
     full: bool,
+    /// Whether the branch itself counts the axisymmetric modes of both parities.
+    whole: bool,
     /// Whether it was interrupted.
     partial: bool,
+}
+
+/// The word for the parity of a mode.
+fn parity(parity: Option<Parity>) -> &'static str {
+    parity.map_or("none", Parity::name)
 }
 
 impl Stability {
@@ -68,6 +79,30 @@ impl Stability {
         insert(problem, branch, scanned)
     }
 
+    /// The same of a branch from pole to pole, in its own parameter; its axisymmetric modes of both
+    /// parities it counts itself.
+    pub(super) fn of_whole<P: WholeShell>(
+        case: &ResolvedCase,
+        problem: &P,
+        traced: &mut ContactBranch,
+        observer: &mut Observer<'_>,
+    ) -> Stability {
+        let none = Stability { whole: true, ..Stability::default() };
+        let StabilityCase::Full { max_n } = case.stability else { return none };
+        let branch = &mut traced.branch;
+        if branch.stopped.reason == StopReason::Interrupted {
+            return none;
+        }
+        let settings = ScanSettings { max_n, ..ScanSettings::default() };
+        let (points, events) = (branch.points.len(), branch.events.len());
+        let parameter = branch.points.last().map_or(f64::NAN, |point| point.p);
+        let go_on = &mut |_| observer(Progress { points, events, parameter });
+        let Ok(scanned) = scan_whole_branch(problem, branch, &settings, go_on) else {
+            return none;
+        };
+        Stability { whole: true, ..insert(problem, branch, scanned) }
+    }
+
     /// Names of the columns.
     pub(super) fn titles(&self) -> Vec<String> {
         if self.full { Self::NAMES.map(str::to_owned).to_vec() } else { Vec::new() }
@@ -81,7 +116,8 @@ impl Stability {
             false if scan.certain && point.certified && point.unstable.is_some() => "yes",
             false => "unknown",
         };
-        vec![scan.antisymmetric.into(), scan.modes.into(), scan.first_n.into(), word.into()]
+        let antisymmetric = if self.whole { Cell::Empty } else { scan.antisymmetric.into() };
+        vec![antisymmetric, scan.modes.into(), scan.first_n.into(), word.into()]
     }
 
     /// Whether anything that was counted is unstable.
@@ -96,7 +132,11 @@ impl Stability {
 
     /// Which modes were examined.
     pub(super) fn examined(&self) -> Examined {
-        if self.full { Examined::AxisymmetricAndOthers } else { Examined::Axisymmetric }
+        match (self.full, self.whole) {
+            (true, _) => Examined::AxisymmetricAndOthers,
+            (false, true) => Examined::AxisymmetricBothParities,
+            (false, false) => Examined::Axisymmetric,
+        }
     }
 
     /// Whether a special point is drawn: of those at which symmetry is lost, the ones where the
@@ -146,12 +186,17 @@ impl Stability {
         self.modes.iter().filter(|mode| mode.n > 0).count()
     }
 
+    /// Number of changes of counts that were not located.
+    pub(super) fn missed(&self) -> usize {
+        self.missed
+    }
+
     /// What was looked at.
     pub(super) fn record(&self) -> StabilityRecord {
         let largest = self.scans.iter().map(|scan| scan.n_max).max();
         StabilityRecord {
             full: self.full,
-            both_parities: false,
+            both_parities: self.whole,
             max_n: largest.filter(|_| self.full),
             certain: self.full.then(|| !self.partial && self.scans.iter().all(|s| s.certain)),
             not_located: self.missed,
@@ -159,7 +204,7 @@ impl Stability {
     }
 }
 
-fn insert(problem: &ContactProblem, branch: &mut Branch, scanned: Scanned) -> Stability {
+fn insert<P: Loading>(problem: &P, branch: &mut Branch, scanned: Scanned) -> Stability {
     let Scanned { points: counts, events, missed } = scanned;
     let mut out = Stability { missed: missed.len(), full: true, ..Stability::default() };
     let old = std::mem::take(&mut branch.points);
@@ -185,7 +230,7 @@ fn insert(problem: &ContactProblem, branch: &mut Branch, scanned: Scanned) -> St
             out.shapes.push(one.mode_shape.clone());
             out.modes.push(ModeRecord {
                 n: one.n,
-                parity: one.parity.name(),
+                parity: parity(one.parity),
                 before: one.modes_before,
                 after: one.modes_after,
             });
@@ -228,12 +273,7 @@ fn insert(problem: &ContactProblem, branch: &mut Branch, scanned: Scanned) -> St
 }
 
 /// The state of a special point as a point of the branch.
-fn between(
-    problem: &ContactProblem,
-    a: &Point,
-    b: &Point,
-    one: &SymmetryBreaking,
-) -> Option<Point> {
+fn between<P: Loading>(problem: &P, a: &Point, b: &Point, one: &SymmetryBreaking) -> Option<Point> {
     let mut observables = vec![0.0; a.observables.len()];
     problem.observe(&one.u, &problem.parameters_at(one.z0), &mut observables).ok()?;
     let at = |x: f64, y: f64| x + one.share * (y - x);

@@ -3,12 +3,12 @@
 use super::contact::{SAMPLES, drawn, event_record, loaded_path, no_start, path, row};
 use super::form::{StabilityColumns, certified};
 use super::stability::Stability;
-use super::waves::Waves;
 use super::{Observer, RunError, listen};
 use crate::case::{PlateCase, ResolvedCase, TwoPlatesCase};
-use crate::output::{ContactRow, EventRecord, Pictures, StabilityRecord, Table, TraceResult};
+use crate::output::{Cell, ContactRow, EventRecord, Pictures, Table, TraceResult};
 use crate::pictures::{self, Curve, Profile, Shape};
-use continuation::{Branch, EvalError, Problem, Tracer};
+use continuation::{Branch, EvalError, Tracer};
+use shell_contact::modes::WholeShell;
 use shell_contact::two_plates::{
     Plate, Support, SupportedProblem, TwoPlatesGroups, TwoPlatesProblem,
 };
@@ -20,7 +20,7 @@ const OWN: [&str; 5] =
     ["pole_top", "pole_bottom", "shift", "force_bottom", "contact_radius_bottom"];
 
 /// What a picture or a table of a state needs beside the branch.
-pub(super) trait BetweenPlates: Problem {
+pub(super) trait BetweenPlates: WholeShell {
     /// The meridian from the upper pole to the lower.
     fn meridian(&self, x: &[f64], p: &[f64]) -> Result<shell_contact::Profile, EvalError>;
     /// Heights of both plates.
@@ -121,10 +121,11 @@ impl WithPlates for Trace<'_, '_> {
             .and_then(|tracer| tracer.watching(&force_watches()))
             .map(|tracer| tracer.run(&mut listen(observer)))
             .map_err(|detail| no_start(case, detail))?;
+        let mut traced = ContactBranch::new(branch, None);
+        let stability = Stability::of_whole(case, problem, &mut traced, observer);
         let seconds = clock.elapsed().as_secs_f64();
-        let traced = ContactBranch::new(branch, None);
-        let pictures = pictures(case, problem, &traced);
-        Ok(TraceResult { pictures, ..result(case, &traced, seconds) })
+        let pictures = pictures(case, problem, &traced, &stability);
+        Ok(TraceResult { pictures, ..result(case, &traced, &stability, seconds) })
     }
 }
 
@@ -134,16 +135,11 @@ pub(super) fn settings(case: &ResolvedCase, name: &str) -> continuation::Setting
 }
 
 /// A traced branch as plain numbers, without pictures.
-pub(super) fn result(case: &ResolvedCase, traced: &ContactBranch, seconds: f64) -> TraceResult {
-    tabulated(case, traced, seconds, None)
-}
-
-/// The same; beside symmetric branches also with the columns that those have, of modes with `waves`.
-fn tabulated(
+pub(super) fn result(
     case: &ResolvedCase,
     traced: &ContactBranch,
+    scanned: &Stability,
     seconds: f64,
-    waves: Option<&Waves>,
 ) -> TraceResult {
     let branch = &traced.branch;
     let stability = StabilityColumns::of(branch);
@@ -153,20 +149,22 @@ fn tabulated(
         .and(OWN.map(str::to_owned).to_vec())
         .and(base.into_iter().collect())
         .and(stability.titles())
-        .and(waves.map_or(Vec::new(), |_| Stability::NAMES.map(str::to_owned).to_vec()));
+        .and(scanned.titles());
+    let columns = table.columns().len();
     for (index, point) in branch.points.iter().enumerate() {
         let mut cells = row(traced, index, point).cells();
         cells.extend(OWN.map(|name| observed(branch, index, name).into()));
         cells.extend(loaded.then(|| point.p.into()));
         cells.extend(stability.cells(point));
-        cells.extend(waves.into_iter().flat_map(|waves| waves.cells(index, point)));
+        cells.extend(scanned.cells(index, point));
+        cells.resize(columns, Cell::Empty);
         table.push(cells);
     }
-    let events = branch.events.iter().map(|event| {
+    let events = branch.events.iter().enumerate().map(|(k, event)| {
         let observables = vec![("shift".to_owned(), observed(branch, event.point, "shift"))];
-        EventRecord { observables, ..event_record(traced, event, loaded) }
+        let mode = scanned.mode(branch, k);
+        EventRecord { observables, mode, ..event_record(traced, event, loaded) }
     });
-    let own = StabilityRecord { both_parities: true, ..StabilityRecord::default() };
     TraceResult {
         case: case.name.clone(),
         parameter: branch.parameter.clone(),
@@ -180,8 +178,8 @@ fn tabulated(
         newton_iterations: branch.statistics.newton_iterations,
         seconds,
         maxwell: None,
-        stability: Some(waves.map_or(own, Waves::record)),
-        shapes: Vec::new(),
+        stability: Some(scanned.record()),
+        shapes: scanned.shapes(branch),
         pictures: Pictures::default(),
     }
 }
@@ -192,23 +190,13 @@ fn observed(branch: &Branch, index: usize, name: &str) -> f64 {
 }
 
 /// A branch of a diagram, and its force over half the distance of the plates.
-pub(super) fn on_diagram(case: &ResolvedCase, traced: &ContactBranch) -> (TraceResult, Curve) {
-    let curve = force_over(traced, &rows(traced), &|row| row.z0);
-    (result(case, traced, 0.0), curve)
-}
-
-/// A branch without mirror symmetry in the diagram of a contact case.
-pub(super) fn beside_symmetric(
+pub(super) fn on_diagram(
     case: &ResolvedCase,
     traced: &ContactBranch,
-    waves: &Waves,
+    stability: &Stability,
 ) -> (TraceResult, Curve) {
-    let curve = Curve {
-        asymmetric: waves.unstable(),
-        examined: waves.examined(),
-        ..force_over(traced, &rows(traced), &|row| row.z0)
-    };
-    (tabulated(case, traced, 0.0, Some(waves)), curve)
+    let curve = force_over(traced, stability, &rows(traced), &|row| row.z0);
+    (result(case, traced, stability, 0.0), curve)
 }
 
 fn rows(traced: &ContactBranch) -> Vec<ContactRow> {
@@ -218,17 +206,18 @@ fn rows(traced: &ContactBranch) -> Vec<ContactRow> {
 
 fn force_over(
     traced: &ContactBranch,
+    stability: &Stability,
     rows: &[ContactRow],
     x: &dyn Fn(&ContactRow) -> f64,
 ) -> Curve {
-    let curve = drawn(traced, &Stability::default(), rows, "force", x, &|row| row.force);
-    Curve { examined: pictures::Examined::AxisymmetricBothParities, ..curve }
+    drawn(traced, stability, rows, "force", x, &|row| row.force)
 }
 
 fn pictures<P: BetweenPlates>(
     case: &ResolvedCase,
     problem: &P,
     traced: &ContactBranch,
+    stability: &Stability,
 ) -> Pictures {
     let rows = rows(traced);
     let (mut shapes, mut film_pressure) = (Vec::new(), Vec::new());
@@ -239,7 +228,8 @@ fn pictures<P: BetweenPlates>(
         let Ok(meridian) = problem.meridian(&point.u, &p) else { continue };
         let Ok(heights) = problem.heights(&point.u, &p) else { continue };
         let z0 = rows[index].z0;
-        let stability = pictures::Stability::of(point.unstable.is_some_and(|n| n > 0), false);
+        let own = point.unstable.is_some_and(|n| n > 0);
+        let state = pictures::Stability::of(own, stability.is_asymmetric(index));
         let label = match traced.deformation(z0) {
             Some(d) => format!("Δ/R₀ = {d:.3}"),
             None => format!("z₀/R₀ = {z0:.3}"),
@@ -250,7 +240,7 @@ fn pictures<P: BetweenPlates>(
             label: label.clone(),
             sigma: meridian.sigma[..upper].to_vec(),
             value: meridian.disjoining_pressure[..upper].to_vec(),
-            stability,
+            stability: state,
         });
         shapes.push(Shape {
             label,
@@ -258,10 +248,10 @@ fn pictures<P: BetweenPlates>(
             z: meridian.z,
             plate: heights[0],
             plate_below: Some(heights[1]),
-            stability,
+            stability: state,
         });
     }
-    let force = |x: &dyn Fn(&ContactRow) -> f64| force_over(traced, &rows, x);
+    let force = |x: &dyn Fn(&ContactRow) -> f64| force_over(traced, stability, &rows, x);
     Pictures {
         title: case.name.clone(),
         force_deformation: traced.zero_force.map(|_| force(&|row| row.deformation)),

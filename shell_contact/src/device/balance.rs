@@ -2,14 +2,15 @@
 //!
 //! Between neighbouring points height and force are cubic Hermite polynomials of the arclength, with
 //! the exact slopes of the discrete equilibria, and `∫F dz0` of the two is exact; a jump goes along
-//! the device's line. Where a segment and its two halves differ, the curve's own state in the middle is
+//! the device's line. A shell that differs from its mirror image may be given as its device holds it:
+//! then the force is integrated over the device's parameter, `dΠ = −2√k_b F dp`, which a jump does
+//! not change. Where a segment and its two halves differ, the curve's own state in the middle is
 //! computed. The energies of the states are not used, so that a closed loop's area and the
 //! energy dissipated by its jumps check each other.
 
 use super::cycle::{Cycle, CyclePoint, Direction};
 use super::walker::{Place, Tangent, Walker};
-use crate::contact::ContactProblem;
-use crate::film::Potential;
+use super::{Device, Loading};
 use continuation::EvalError;
 
 /// Work done on the whole shell by both plates, in `χR0²`.
@@ -30,23 +31,23 @@ const NEGLIGIBLE: f64 = 1e-9;
 /// Most halvings of a segment.
 const DEEPEST: usize = 12;
 
-/// The work on the path of a cycle.
+/// The work on the path of a cycle of a shell under a grip, or held by the cycle's device if that is
+/// no dead load: work is then that of the device's parameter.
 ///
 /// # Errors
 /// When the cycle is not one of this problem.
-pub fn balance<F: Potential>(
-    contact: &ContactProblem<F>,
-    cycle: &Cycle,
-) -> Result<Balance, EvalError> {
-    let mut integral = Integral { walker: Walker::new(contact), tolerance: 0.0, error: 0.0 };
-    let size: f64 =
-        cycle.points.windows(2).map(|pair| (pair[0].force * (pair[1].z0 - pair[0].z0)).abs()).sum();
+pub fn balance<P: Loading>(problem: &P, cycle: &Cycle) -> Result<Balance, EvalError> {
+    let own = problem.device() != Device::Grip;
+    let mut integral = Integral { walker: Walker::new(problem), own, tolerance: 0.0, error: 0.0 };
+    let step = |pair: &[CyclePoint]| integral.height(&pair[1]) - integral.height(&pair[0]);
+    let size: f64 = cycle.points.windows(2).map(|pair| (pair[0].force * step(pair)).abs()).sum();
     integral.tolerance = NEGLIGIBLE * size;
     let (mut approach, mut retract) = (0.0, 0.0);
     for (k, pair) in cycle.points.windows(2).enumerate() {
         let (a, b) = (&pair[0], &pair[1]);
         let jump = cycle.jumps.iter().find(|jump| jump.after == Some(k + 1));
         let part = match jump {
+            Some(_) if own => 0.0,
             Some(jump) => cycle.device.work(jump.parameter, a.z0, b.z0),
             None => integral.between(a, b)?,
         };
@@ -64,8 +65,10 @@ pub fn balance<F: Potential>(
     })
 }
 
-struct Integral<'c, F: Potential> {
-    walker: Walker<'c, F>,
+struct Integral<'c, P: Loading> {
+    walker: Walker<'c, P>,
+    /// Whether the force is integrated over the device's parameter.
+    own: bool,
     tolerance: f64,
     error: f64,
 }
@@ -77,16 +80,22 @@ struct Node {
     tangent: Tangent,
 }
 
-impl<F: Potential> Integral<'_, F> {
+impl<P: Loading> Integral<'_, P> {
+    /// What the force is integrated over.
+    fn height(&self, point: &CyclePoint) -> f64 {
+        if self.own { point.parameter } else { point.z0 }
+    }
+
     fn between(&mut self, a: &CyclePoint, b: &CyclePoint) -> Result<f64, EvalError> {
-        let place = |p: &CyclePoint| Place { u: p.u.clone(), z0: p.z0 };
+        let place = |p: &CyclePoint| Place { u: p.u.clone(), z0: self.height(p) };
         let (from, to) = (place(a), place(b));
         if self.walker.look_from_to(&from, &to) == 0.0 {
             return Ok(0.0);
         }
         let (at_a, at_b) = (self.walker.tangent(&from)?, self.walker.tangent(&to)?);
-        let a = Node { place: from, force: a.force, tangent: at_a };
-        let b = Node { place: to, force: b.force, tangent: at_b };
+        let forces = (self.walker.force(&from)?, self.walker.force(&to)?);
+        let a = Node { place: from, force: forces.0, tangent: at_a };
+        let b = Node { place: to, force: forces.1, tangent: at_b };
         let whole = self.piece(&a, &b);
         self.refine(&a, &b, whole, 0)
     }

@@ -1,12 +1,13 @@
 //! Once to and fro in a device's parameter: the stable state is followed, and where it ends the
 //! dissipative motion leads to another.
 
-use super::flow::{Motion, MotionError, Relaxation, RelaxationSettings};
+use super::flow::{Motion, MotionError, Relaxation, RelaxationSettings, Side};
 use super::start::{device_settings, device_watches};
 use super::walker::dot;
 use super::{Device, Loading};
 use continuation::{
-    EvalError, Event, Point, Progress, Settings, Stop, StopReason, TraceError, Tracer,
+    Detail, EvalError, Event, EventKind, NewtonSettings, Point, Progress, Settings, Stop,
+    StopReason, TraceError, Tracer, newton,
 };
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -43,7 +44,7 @@ pub struct CyclePoint {
     pub parameter: f64,
     /// The plate's height, in `R0`.
     pub z0: f64,
-    /// Force on one plate, in `√(χk_b)`.
+    /// Force on one plate, the upper if they carry different ones, in `√(χk_b)`.
     pub force: f64,
     /// Total energy of the whole shell, in `χR0²`.
     pub energy: f64,
@@ -83,7 +84,8 @@ pub struct Cycle {
     pub points: Vec<CyclePoint>,
     /// The jumps between them, in order.
     pub jumps: Vec<Jump>,
-    /// Whether the last state is the first one, and the plate has not been far away in between.
+    /// Whether the last state is the first one or its mirror image, and the plate has not been far away
+    /// in between.
     pub closed: bool,
     /// Why it ended: `ClosedLoop`; `Target` if it came back to another state; `Domain` if the plate
     /// flew away; else it is not complete.
@@ -115,6 +117,10 @@ const FAR: f64 = 5.0;
 
 /// States nearer than this, in `R0`, are the same.
 const SAME: f64 = 1e-8;
+
+/// How far beyond a branch point states of other branches are sought: the nearer one is nearer to it
+/// by the square root of their ratio at least, unless it is a jump away.
+const BEYOND: [f64; 2] = [1e-6, 1e-8];
 
 /// Travels from `x`, a stable state near the start, to the end and back. The observer hears of every
 /// point and may stop the cycle.
@@ -181,6 +187,8 @@ impl End {
 enum Stretch {
     Target,
     Lost,
+    /// At a branch point, from which the stable states of another branch lead on.
+    Passed,
 }
 
 impl<P: Loading> Traveller<'_, P> {
@@ -199,6 +207,7 @@ impl<P: Loading> Traveller<'_, P> {
             while self.parameter != to {
                 match self.stretch(direction, to, observer)? {
                     Stretch::Target => break,
+                    Stretch::Passed => {}
                     Stretch::Lost => self.jump(direction)?,
                 }
                 if self.away {
@@ -217,10 +226,8 @@ impl<P: Loading> Traveller<'_, P> {
             return Ok(false);
         }
         self.parameter = 0.0;
-        let p = problem.contact().parameters_at(self.parameter);
-        let free = super::start::free_start(problem.contact(), FAR);
-        let Ok(free) = free else { return Ok(false) };
-        let from: Vec<f64> = free.into_iter().chain([FAR]).collect();
+        let p = problem.parameters_at(self.parameter);
+        let Some(from) = problem.free(FAR) else { return Ok(false) };
         let motion = self.relaxation.from_state(problem, &from, &p);
         self.cycle.newton_iterations += self.relaxation.assemblies();
         if let Err(error) = motion {
@@ -266,7 +273,7 @@ impl<P: Loading> Traveller<'_, P> {
         };
         let trace = device_settings(problem.device(), trace);
         let name = problem.device().parameter_name();
-        let p = problem.contact().parameters_at(self.parameter);
+        let p = problem.parameters_at(self.parameter);
         let tracer = Tracer::new(problem, name, &self.x, &p, trace)
             .and_then(|tracer| tracer.watching(&device_watches(problem.device())));
         let mut tracer = match tracer {
@@ -293,6 +300,14 @@ impl<P: Loading> Traveller<'_, P> {
                 self.record(direction, &point, event.as_ref());
             }
             fresh = true;
+            if (point.p - self.parameter) * (target - self.parameter) < 0.0 {
+                let detail = format!(
+                    "at {name} = {:.10} the branch turns back without a loss of stability",
+                    self.parameter
+                );
+                outcome = Some(Err(End::stop(StopReason::StepTooSmall, detail)));
+                break;
+            }
             self.x.copy_from_slice(&point.u);
             self.parameter = point.p;
             let progress = Progress {
@@ -307,6 +322,14 @@ impl<P: Loading> Traveller<'_, P> {
                 break;
             }
             let lost = event.as_ref().and_then(|e| e.unstable_after).is_some_and(|n| n > 0);
+            let meets = event.as_ref().is_some_and(|e| {
+                let turns = matches!(&e.detail, Detail::Crossing(crossing) if crossing.from_side);
+                e.kind == EventKind::BranchPoint && (lost || turns)
+            });
+            if meets && self.pass(direction, target) {
+                outcome = Some(Ok(Stretch::Passed));
+                break;
+            }
             if lost {
                 outcome = Some(Ok(Stretch::Lost));
                 break;
@@ -335,10 +358,64 @@ impl<P: Loading> Traveller<'_, P> {
         }
     }
 
+    /// At a branch point: goes on without a jump if beyond it there are stable states of another
+    /// branch, ever nearer to it, and records the first of them.
+    fn pass(&mut self, direction: Direction, target: f64) -> bool {
+        let problem = self.problem;
+        let (at, ahead) = (self.parameter, target - self.parameter);
+        let mut distances = [0.0; 2];
+        let mut beyond = Vec::new();
+        for (distance, step) in distances.iter_mut().zip(BEYOND) {
+            if ahead.abs() < step {
+                return false;
+            }
+            let Some(x) = self.stable_beyond(at + step.copysign(ahead)) else { return false };
+            let apart: Vec<f64> = x.iter().zip(&self.x).map(|(a, b)| a - b).collect();
+            let mut m = vec![0.0; apart.len()];
+            problem.metric(&apart, &mut m);
+            *distance = dot(&m, &apart).max(0.0).sqrt();
+            if beyond.is_empty() {
+                beyond = x;
+            }
+        }
+        // a tenth or less where branches meet, all of it after a jump
+        if distances[1] > 0.5 * distances[0] {
+            return false;
+        }
+        let before = std::mem::replace(&mut self.x, beyond);
+        self.parameter = at + BEYOND[0].copysign(ahead);
+        match self.landing(direction) {
+            Ok(point) => {
+                self.cycle.points.push(CyclePoint { event: None, ..point });
+                true
+            }
+            Err(_) => {
+                (self.x, self.parameter) = (before, at);
+                false
+            }
+        }
+    }
+
+    /// The stable state where the device's parameter has another value, a little off: on the branch
+    /// that goes on, or where the motion from there leads.
+    fn stable_beyond(&mut self, parameter: f64) -> Option<Vec<f64>> {
+        let problem = self.problem;
+        let p = problem.parameters_at(parameter);
+        let mut x = self.x.clone();
+        let report = newton(problem, &mut x, &p, &NewtonSettings::default()).ok()?;
+        self.cycle.newton_iterations += report.iterations;
+        if self.relaxation.is_stable(problem, &x, &p) {
+            return Some(x);
+        }
+        let motion = self.relaxation.from_saddle(problem, &x, &p, Side::First);
+        self.cycle.newton_iterations += self.relaxation.assemblies();
+        (motion == Ok(Motion::Rest)).then(|| self.relaxation.state().to_vec())
+    }
+
     /// Follows the dissipative motion from the state that was lost.
     fn jump(&mut self, direction: Direction) -> Result<(), End> {
         let problem = self.problem;
-        let p = problem.contact().parameters_at(self.parameter);
+        let p = problem.parameters_at(self.parameter);
         let motion = self.relaxation.from_fold(problem, &self.x, &p);
         self.cycle.newton_iterations += self.relaxation.assemblies();
         let before = self.cycle.points.len().saturating_sub(1);
@@ -378,31 +455,29 @@ impl<P: Loading> Traveller<'_, P> {
 
     fn landing(&self, direction: Direction) -> Result<CyclePoint, EvalError> {
         let problem = self.problem;
-        let p = problem.contact().parameters_at(self.parameter);
+        let p = problem.parameters_at(self.parameter);
         let z0 = problem.plate(&self.x, &p);
-        let u = problem.shell_part(&self.x);
-        let seen = problem.contact().observation(u, &problem.contact().parameters_at(z0))?;
         Ok(CyclePoint {
             direction,
             parameter: self.parameter,
             z0,
-            force: seen.force,
-            energy: seen.energy_total,
+            force: problem.force(&self.x, &p)?,
+            energy: problem.energy(&self.x, &p)?,
             potential: problem.potential(&self.x, &p)?,
-            u: u.to_vec(),
+            u: problem.shell_part(&self.x).to_vec(),
             event: Some(JUMP.to_owned()),
         })
     }
 
     fn record(&mut self, direction: Direction, point: &Point, event: Option<&Event>) {
         let problem = self.problem;
-        let p = problem.contact().parameters_at(point.p);
+        let p = problem.parameters_at(point.p);
         let named = |name: &str| {
             let at = problem.observables().iter().position(|n| *n == name);
             at.map_or(f64::NAN, |k| point.observables[k])
         };
         let (z0, energy) = (problem.plate(&point.u, &p), named("energy_total"));
-        let root = problem.contact().groups().bending.sqrt();
+        let root = problem.root(&p);
         self.cycle.points.push(CyclePoint {
             direction,
             parameter: point.p,
@@ -415,19 +490,24 @@ impl<P: Loading> Traveller<'_, P> {
         });
     }
 
+    /// Whether a state is the first one.
+    fn is_first(&self, x: &[f64]) -> bool {
+        let Some(first) = &self.first else { return false };
+        let difference: Vec<f64> = x.iter().zip(first).map(|(a, b)| a - b).collect();
+        let mut m = vec![0.0; difference.len()];
+        self.problem.metric(&difference, &mut m);
+        dot(&m, &difference).max(0.0).sqrt() < SAME
+    }
+
     /// After both ways: whether the path came back to its beginning.
     fn end(&mut self) -> Stop {
         let stop = |reason, detail: &str| Stop { reason, detail: detail.to_owned() };
         if self.away {
             return stop(StopReason::Domain, "the plate flew away: no state holds the load");
         }
-        let difference: Vec<f64> = match &self.first {
-            Some(first) => self.x.iter().zip(first).map(|(a, b)| a - b).collect(),
-            None => Vec::new(),
-        };
-        let mut m = vec![0.0; difference.len()];
-        self.problem.metric(&difference, &mut m);
-        let back = dot(&m, &difference).max(0.0).sqrt() < SAME;
+        let problem = self.problem;
+        let back = self.is_first(&self.x)
+            || problem.mirrored(&self.x).is_some_and(|image| self.is_first(&image));
         let bounded = self.cycle.jumps.iter().all(|jump| jump.dissipated.is_some());
         self.cycle.closed = back && bounded;
         match (back, bounded) {

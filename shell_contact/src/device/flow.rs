@@ -11,6 +11,7 @@
 //! A motion begins at a fold, moved along the critical mode to the side on which `Π` falls.
 
 use super::{Device, Loading};
+use continuation::linalg::Arrow;
 use continuation::{EvalError, Matrix, NewtonError, NewtonSettings, newton};
 
 /// How closely the motion is followed.
@@ -85,14 +86,33 @@ const NEAREST_DEPARTURE: f64 = 1e-7;
 const FIRST: f64 = 0.125;
 /// Inverse iterations for the critical mode.
 const ITERATIONS: usize = 6;
+/// The same with a shift, which is at most twice the smallest eigenvalue or the least shift.
+const SHIFTED_ITERATIONS: usize = 60;
+/// The shifts tried, in `χ/R0²`: an eigenvalue above the least is as good as zero.
+const LEAST_SHIFT: f64 = 1e-12;
+/// The largest: no mode of a shell is softer by more than its own stiffness.
+const LARGEST_SHIFT: f64 = 1e3;
+/// Slopes that differ by less are those of two mirror images: at the distances of a departure other
+/// ones differ by the cubic term, a part of them.
+const EQUALLY_STEEP: f64 = 1e-6;
+/// Most corrections of a state across the mode.
+const CORRECTIONS: usize = 12;
+/// Corrections shorter than this, in `R0`, have converged: the slope is the third power of a distance.
+const GIVEN_WAY: f64 = 1e-13;
 /// A Newton step shorter than this ends the motion, where the Hessian is positive definite.
 const NEAR: f64 = 1e-3;
+/// How much shorter it must be after one that led to no state of rest.
+const LESS_NEAR: f64 = 0.1;
 /// Newton's method may go this much farther to the state of rest.
 const SAME_PLACE: f64 = 10.0;
 /// Shortest `τ` relative to the first.
 const SHORTEST: f64 = 1e-14;
 /// A plate that still moves outwards here does not come back.
 const FAR: f64 = 10.0;
+/// Second corrections shorter than this, in `R0`, are rounding.
+const LEAST_DIFFERENCE: f64 = 1e-12;
+/// Slopes this much larger than rounding are none.
+const CLEAR: f64 = 8.0;
 /// What rounding may add to an energy that falls, in units of its terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -108,9 +128,40 @@ pub struct Relaxation<P: Loading> {
     correction: Vec<f64>,
     work: Vec<f64>,
     mode: Vec<f64>,
+    /// The Hessian bordered with the mode, where it was needed.
+    bordered: Option<Arrow<P::Jacobian>>,
     potential: f64,
     steps: usize,
     assemblies: usize,
+}
+
+/// Which side of an unstable equilibrium a motion leaves it to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// To which the potential falls more steeply; to the other one if no motion leads there.
+    First,
+    /// The other one.
+    Second,
+}
+
+/// How a motion begins beside an equilibrium.
+struct Departure {
+    /// Sides of the mode.
+    sides: [Option<f64>; 2],
+    /// How far along it, in `R0`.
+    distance: f64,
+    /// Time scale there.
+    time: f64,
+    line: Line,
+}
+
+/// What is looked at beside an equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Line {
+    /// The straight line along the mode.
+    Straight,
+    /// The states of least potential in the planes across it.
+    Curved,
 }
 
 /// What a trial step found.
@@ -134,6 +185,7 @@ impl<P: Loading> Relaxation<P> {
             correction: zero(),
             work: zero(),
             mode: zero(),
+            bordered: None,
             potential: f64::NAN,
             steps: 0,
             assemblies: 0,
@@ -162,18 +214,76 @@ impl<P: Loading> Relaxation<P> {
     /// When the motion could not be followed.
     pub fn from_fold(&mut self, problem: &P, x: &[f64], p: &[f64]) -> Result<Motion, MotionError> {
         (self.steps, self.assemblies) = (0, 0);
-        let (sides, distance, time) = self.departure(problem, x, p)?;
+        self.x.copy_from_slice(x);
+        self.assemble(problem, p).map_err(MotionError::Start)?;
+        let floor = f64::EPSILON * self.hessian.norm();
+        self.hessian.factor(floor);
+        self.inverse_iterations(problem, ITERATIONS);
+        match self.downwards(problem, x, p, Line::Straight) {
+            Ok(departure) => self.leave(problem, x, p, departure),
+            // at a pitchfork the potential falls as the fourth power, less than the stiff
+            // directions climb unless they give way
+            Err(_) => {
+                let departure = self.downwards(problem, x, p, Line::Curved)?;
+                self.leave(problem, x, p, departure)
+            }
+        }
+    }
+
+    /// Follows the motion to the first side on which it can be.
+    fn leave(
+        &mut self,
+        problem: &P,
+        x: &[f64],
+        p: &[f64],
+        departure: Departure,
+    ) -> Result<Motion, MotionError> {
+        let Departure { sides, distance, time, line } = departure;
         let mut outcome = Err(MotionError::NoWayDown);
         for side in sides.into_iter().flatten() {
-            for ((to, from), mode) in self.x.iter_mut().zip(x).zip(&self.mode) {
-                *to = from + side * distance * mode;
+            if self.slope(problem, x, p, side * distance, line).is_none() {
+                continue;
             }
+            self.x.copy_from_slice(&self.trial);
             outcome = self.follow(problem, p, FIRST * time);
             if outcome.is_ok() {
                 break;
             }
         }
         outcome
+    }
+
+    /// The motion that begins at `x`, an equilibrium that is unstable, along its most unstable mode.
+    /// Of two sides to which the potential falls equally the first is that along which the unknowns
+    /// grow on the whole.
+    ///
+    /// # Errors
+    /// When the motion could not be followed.
+    pub fn from_saddle(
+        &mut self,
+        problem: &P,
+        x: &[f64],
+        p: &[f64],
+        side: Side,
+    ) -> Result<Motion, MotionError> {
+        (self.steps, self.assemblies) = (0, 0);
+        self.x.copy_from_slice(x);
+        self.assemble(problem, p).map_err(MotionError::Start)?;
+        let mut drag = LEAST_SHIFT;
+        problem.add_drag(drag, &mut self.hessian);
+        while !self.is_definite(problem) {
+            if drag > LARGEST_SHIFT {
+                return Err(MotionError::NoWayDown);
+            }
+            problem.add_drag(drag, &mut self.hessian);
+            drag *= 2.0;
+        }
+        self.inverse_iterations(problem, SHIFTED_ITERATIONS);
+        let mut departure = self.downwards(problem, x, p, Line::Straight)?;
+        if side == Side::Second {
+            departure.sides = [departure.sides[1], None];
+        }
+        self.leave(problem, x, p, departure)
     }
 
     /// The motion that begins at `x`, which is no equilibrium.
@@ -186,41 +296,66 @@ impl<P: Loading> Relaxation<P> {
         self.follow(problem, p, 1.0)
     }
 
-    /// The critical mode; the sides of it to which the potential falls, the steeper first; how far
-    /// to begin and on which time scale.
-    fn departure(
-        &mut self,
-        problem: &P,
-        x: &[f64],
-        p: &[f64],
-    ) -> Result<([Option<f64>; 2], f64, f64), MotionError> {
+    /// Whether an equilibrium is stable.
+    pub fn is_stable(&mut self, problem: &P, x: &[f64], p: &[f64]) -> bool {
         self.x.copy_from_slice(x);
-        self.assemble(problem, p).map_err(MotionError::Start)?;
+        self.assemble(problem, p).is_ok() && self.is_definite(problem)
+    }
+
+    /// Whether the Hessian as it is, factored here, is positive definite but for multipliers.
+    fn is_definite(&mut self, problem: &P) -> bool {
         let floor = f64::EPSILON * self.hessian.norm();
-        self.hessian.factor(floor);
+        let facts = self.hessian.factor(floor);
+        let multipliers = problem.multipliers();
+        facts.perturbed == 0 && facts.inertia.is_some_and(|(negative, _)| negative <= multipliers)
+    }
+
+    /// The mode whose eigenvalue is nearest to zero, with the factors that the Hessian holds.
+    fn inverse_iterations(&mut self, problem: &P, iterations: usize) {
         self.mode.fill(1.0);
-        for _ in 0..ITERATIONS {
+        for _ in 0..iterations {
             problem.metric(&self.mode, &mut self.work);
             self.mode.copy_from_slice(&self.work);
             self.hessian.solve(&mut self.mode);
             let size = length(problem, &self.mode, &mut self.work);
             self.mode.iter_mut().for_each(|m| *m /= size);
         }
-        // downwards: farther out the straight line along the mode climbs the stiff directions
+    }
+
+    /// The sides of the critical mode to which the potential falls, the steeper first.
+    fn downwards(
+        &mut self,
+        problem: &P,
+        x: &[f64],
+        p: &[f64],
+        line: Line,
+    ) -> Result<Departure, MotionError> {
+        // farther out the straight line along the mode climbs the stiff directions
         let (mut distance, mut both) = (FARTHEST_DEPARTURE, None);
+        // the state is an equilibrium: its own slope is rounding, added up along the mode
+        problem.residual(x, p, &mut self.correction).map_err(MotionError::Start)?;
+        let terms = self.correction.iter().zip(&self.mode).map(|(r, m)| (r * m).powi(2));
+        let rounding = CLEAR * terms.sum::<f64>().sqrt();
         while distance >= NEAREST_DEPARTURE {
             // slopes of the potential along the mode, away from the state
-            let up = self.slope(problem, x, p, distance);
-            let down = self.slope(problem, x, p, -distance).map(|slope| -slope);
+            let up = self.slope(problem, x, p, distance, line);
+            let down = self.slope(problem, x, p, -distance, line).map(|slope| -slope);
             if let (Some(up), Some(down)) = (up, down) {
-                let alike = up.abs().max(down.abs()) < 2.0 * up.abs().min(down.abs());
-                let (first, time) =
-                    (if up < down { 1.0 } else { -1.0 }, distance / up.min(down).abs());
+                let least = up.abs().min(down.abs());
+                let alike = up.abs().max(down.abs()) < 2.0 * least && least > rounding;
+                let time = distance / up.min(down).abs();
+                let depart = |sides| Departure { sides, distance, time, line };
                 if alike && up * down < 0.0 {
-                    return Ok(([Some(first), None], distance, time));
+                    let first = if up < down { 1.0 } else { -1.0 };
+                    return Ok(depart([Some(first), None]));
                 }
                 if alike && up < 0.0 && both.is_none() {
-                    both = Some(([Some(first), Some(-first)], distance, time));
+                    // by symmetry both may be equally steep: then rounding does not choose
+                    let equal = (up - down).abs() < EQUALLY_STEEP * up.abs();
+                    let grows = self.mode.iter().sum::<f64>() >= 0.0;
+                    let upwards = if equal { grows } else { up < down };
+                    let first = if upwards { 1.0 } else { -1.0 };
+                    both = Some(depart([Some(first), Some(-first)]));
                 }
             }
             distance *= 0.25;
@@ -228,12 +363,55 @@ impl<P: Loading> Relaxation<P> {
         both.ok_or(MotionError::NoWayDown)
     }
 
-    fn slope(&mut self, problem: &P, x: &[f64], p: &[f64], distance: f64) -> Option<f64> {
+    /// Slope of the potential along the mode at this distance from `x`; the state there is the trial.
+    fn slope(
+        &mut self,
+        problem: &P,
+        x: &[f64],
+        p: &[f64],
+        distance: f64,
+        line: Line,
+    ) -> Option<f64> {
         for ((to, from), mode) in self.trial.iter_mut().zip(x).zip(&self.mode) {
             *to = from + distance * mode;
         }
+        if line == Line::Curved {
+            return self.give_way(problem, p);
+        }
         problem.residual(&self.trial, p, &mut self.correction).ok()?;
         Some(dot(&self.correction, &self.mode))
+    }
+
+    /// Moves the trial across the mode to the least potential there; its slope along the mode.
+    fn give_way(&mut self, problem: &P, p: &[f64]) -> Option<f64> {
+        let n = self.mode.len();
+        let bordered = self.bordered.get_or_insert_with(|| Arrow::new(problem.new_jacobian(), 1));
+        problem.metric(&self.mode, &mut self.work);
+        bordered.column_mut(0).copy_from_slice(&self.work);
+        bordered.row_mut(0).copy_from_slice(&self.work);
+        bordered.set_corner(0, 0, 0.0);
+        let mut step = vec![0.0; n + 1];
+        let mut last = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            problem.linearise(&self.trial, p, &mut step[..n], bordered.core_mut()).ok()?;
+            self.assemblies += 1;
+            bordered.factor(f64::EPSILON);
+            // along the mode nothing moves; the last unknown is the force that holds the state there
+            step[n] = 0.0;
+            bordered.solve(&mut step);
+            let moved = &step[..n];
+            self.trial.iter_mut().zip(moved).for_each(|(x, d)| *x -= d);
+            let size = length(problem, moved, &mut self.work);
+            if size < GIVEN_WAY || (size < 1e2 * GIVEN_WAY && size > 0.3 * last) {
+                problem.residual(&self.trial, p, &mut self.correction).ok()?;
+                return Some(dot(&self.correction, &self.mode));
+            }
+            if !size.is_finite() || size > 2.0 * last {
+                return None;
+            }
+            last = size;
+        }
+        None
     }
 
     /// Gradient and Hessian at `x`.
@@ -248,7 +426,7 @@ impl<P: Loading> Relaxation<P> {
         self.potential = problem.potential(&self.x, p).map_err(MotionError::Start)?;
         self.assemble(problem, p).map_err(MotionError::Start)?;
         let mut tau = first;
-        let begun = self.steps;
+        let (begun, mut near, mut unconfirmed) = (self.steps, NEAR, None);
         while self.steps - begun < max_steps {
             let (mut drag, mut cause) = (0.0, None);
             let (ratio, moved) = loop {
@@ -262,7 +440,8 @@ impl<P: Loading> Relaxation<P> {
                     }
                 }
                 if tau < SHORTEST * first {
-                    return Err(MotionError::Stuck { steps: self.steps, cause });
+                    let stuck = MotionError::Stuck { steps: self.steps, cause };
+                    return Err(unconfirmed.unwrap_or(stuck));
                 }
             };
             std::mem::swap(&mut self.x, &mut self.trial);
@@ -272,21 +451,27 @@ impl<P: Loading> Relaxation<P> {
             if self.flies_away(problem, p) {
                 return Ok(Motion::Away);
             }
-            if moved < SAME_PLACE * NEAR && self.is_near_rest(problem) {
-                return self.rest(problem, p);
+            if moved < SAME_PLACE * near && self.is_near_rest(problem, near) {
+                match self.rest(problem, p) {
+                    Ok(motion) => return Ok(motion),
+                    // a place that is nearly at rest, as beside a fold, is passed
+                    Err(error) => {
+                        (near, unconfirmed) = (LESS_NEAR * near, Some(error));
+                        self.x.copy_from_slice(&self.trial);
+                        self.assemble(problem, p).map_err(MotionError::Start)?;
+                    }
+                }
             }
             let growth = (0.5 * accuracy / ratio).clamp(1.0, 4.0);
             tau = (tau * growth).min(longest_time * first);
         }
-        Err(MotionError::TooMany { steps: self.steps })
+        Err(unconfirmed.unwrap_or(MotionError::TooMany { steps: self.steps }))
     }
 
     /// Tries the Euler step for which the Hessian holds the drag.
     fn attempt(&mut self, problem: &P, p: &[f64], drag: f64) -> Trial {
         let refuse = |shrink, cause| Trial::Refused { shrink, cause };
-        let floor = f64::EPSILON * self.hessian.norm();
-        let facts = self.hessian.factor(floor);
-        if facts.perturbed > 0 || facts.inertia.is_none_or(|(negative, _)| negative > 0) {
+        if !self.is_definite(problem) {
             return refuse(0.5, None);
         }
         for (step, g) in self.step.iter_mut().zip(&self.gradient) {
@@ -315,9 +500,9 @@ impl<P: Loading> Relaxation<P> {
         }
         self.hessian.solve(&mut self.correction);
         let left = length(problem, &self.correction, &mut self.work);
-        let ratio = if size > 0.0 { left / size } else { 0.0 };
-        // differences of this size are rounding
-        if ratio > self.settings.accuracy && left > 1e-12 {
+        // differences of this size are rounding: they say nothing of the step
+        let ratio = if left > LEAST_DIFFERENCE { left / size } else { 0.0 };
+        if ratio > self.settings.accuracy {
             return refuse((0.7 * self.settings.accuracy / ratio).clamp(0.1, 0.5), None);
         }
         self.potential = potential;
@@ -332,32 +517,30 @@ impl<P: Loading> Relaxation<P> {
     }
 
     /// Whether Newton's method from here goes a short way to a minimum.
-    fn is_near_rest(&mut self, problem: &P) -> bool {
-        let floor = f64::EPSILON * self.hessian.norm();
-        let facts = self.hessian.factor(floor);
-        if facts.perturbed > 0 || facts.inertia.is_none_or(|(negative, _)| negative > 0) {
+    fn is_near_rest(&mut self, problem: &P, near: f64) -> bool {
+        if !self.is_definite(problem) {
             return false;
         }
         self.step.copy_from_slice(&self.gradient);
         self.hessian.solve(&mut self.step);
-        length(problem, &self.step, &mut self.work) < NEAR
+        length(problem, &self.step, &mut self.work) < near
     }
 
-    /// Newton's method to the state of rest.
+    /// Newton's method to the state of rest; the trial is where it began.
     fn rest(&mut self, problem: &P, p: &[f64]) -> Result<Motion, MotionError> {
         self.trial.copy_from_slice(&self.x);
         let report = newton(problem, &mut self.x, p, &NewtonSettings::default())
             .map_err(MotionError::End)?;
         self.assemblies += report.iterations;
-        for (d, x) in self.trial.iter_mut().zip(&self.x) {
-            *d -= x;
+        for ((d, from), to) in self.step.iter_mut().zip(&self.trial).zip(&self.x) {
+            *d = to - from;
         }
         let stuck = MotionError::Stuck { steps: self.steps, cause: None };
-        if length(problem, &self.trial, &mut self.work) > SAME_PLACE * NEAR {
+        if length(problem, &self.step, &mut self.work) > SAME_PLACE * NEAR {
             return Err(stuck);
         }
         self.assemble(problem, p).map_err(MotionError::Start)?;
-        if self.is_near_rest(problem) { Ok(Motion::Rest) } else { Err(stuck) }
+        if self.is_near_rest(problem, NEAR) { Ok(Motion::Rest) } else { Err(stuck) }
     }
 }
 

@@ -61,6 +61,11 @@ impl<'c, F: Potential> LoadedProblem<'c, F> {
         self.contact.parameters_at(value)
     }
 
+    /// The shell without its device.
+    pub fn contact(&self) -> &'c ContactProblem<F> {
+        self.contact
+    }
+
     /// The state of a shell `u` under a plate at `z0`.
     pub fn state(&self, u: &[f64], z0: f64) -> Vec<f64> {
         u.iter().copied().chain([z0]).collect()
@@ -88,7 +93,7 @@ impl<'c, F: Potential> LoadedProblem<'c, F> {
     }
 
     /// The device's force on the plate, in `√(χk_b)`.
-    fn force(&self, z0: f64, parameter: f64) -> f64 {
+    fn load(&self, z0: f64, parameter: f64) -> f64 {
         match self.device {
             Device::Cantilever { stiffness } => stiffness * (z0 - parameter),
             _ => parameter,
@@ -123,7 +128,7 @@ impl<F: Potential> Problem for LoadedProblem<'_, F> {
         let (u, inner) = self.inner(x, p);
         let n = u.len();
         self.contact.residual(u, &inner, &mut r[..n])?;
-        let load = Self::unit(p) * self.force(x[n], p[0]);
+        let load = Self::unit(p) * self.load(x[n], p[0]);
         r[n] = self.contact.plate_pull(u, &inner)? + load;
         if r[n].is_finite() { Ok(()) } else { Err(EvalError::NotFinite { at: n }) }
     }
@@ -144,7 +149,7 @@ impl<F: Potential> Problem for LoadedProblem<'_, F> {
         let (u, inner) = self.inner(x, p);
         let n = u.len();
         self.contact.linearise(u, &inner, &mut r[..n], j.core_mut())?;
-        let load = Self::unit(p) * self.force(x[n], p[0]);
+        let load = Self::unit(p) * self.load(x[n], p[0]);
         r[n] = self.contact.plate_pull(u, &inner)? + load;
         self.border(u, p, &inner, j)?;
         if r[n].is_finite() { Ok(()) } else { Err(EvalError::NotFinite { at: n }) }
@@ -168,7 +173,7 @@ impl<F: Potential> Problem for LoadedProblem<'_, F> {
         self.contact.parameter_derivative(u, &inner, which, &mut out[..n])?;
         out[n] = self.contact.plate_pull_by(u, &inner, which)?;
         if which == parameter::BENDING {
-            out[n] += 0.5 * Self::unit(p) / p[which.0] * self.force(x[n], p[0]);
+            out[n] += 0.5 * Self::unit(p) / p[which.0] * self.load(x[n], p[0]);
         }
         Ok(())
     }
@@ -237,25 +242,50 @@ impl<F: Potential> LoadedProblem<'_, F> {
 }
 
 impl<F: Potential> Loading for LoadedProblem<'_, F> {
-    type Film = F;
-
     fn device(&self) -> Device {
         self.device
     }
 
-    fn contact(&self) -> &ContactProblem<F> {
-        self.contact
+    fn parameters_at(&self, value: f64) -> Vec<f64> {
+        LoadedProblem::parameters_at(self, value)
     }
 
     fn plate(&self, x: &[f64], _: &[f64]) -> f64 {
         x[self.contact.dim()]
     }
 
-    fn potential(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+    fn mean_force(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
         let (u, inner) = self.inner(x, p);
-        let root = p[parameter::BENDING.0].sqrt();
-        let shell = self.contact.total_energy(u, &inner)?;
-        Ok(shell + self.device.potential(root, p[0], x[u.len()]))
+        self.contact.mean_force(u, &inner)
+    }
+
+    fn mean_force_along(
+        &self,
+        x: &[f64],
+        p: &[f64],
+        dx: &[f64],
+        dp: f64,
+    ) -> Result<f64, EvalError> {
+        let slope = self.observable_slope(0, x, p, parameter::Z0, dx, dp)?;
+        Ok(slope.unwrap_or(f64::NAN))
+    }
+
+    fn energy(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+        let (u, inner) = self.inner(x, p);
+        self.contact.total_energy(u, &inner)
+    }
+
+    fn root(&self, p: &[f64]) -> f64 {
+        p[parameter::BENDING.0].sqrt()
+    }
+
+    fn shell_part<'x>(&self, x: &'x [f64]) -> &'x [f64] {
+        &x[..self.contact.dim()]
+    }
+
+    fn free(&self, z0: f64) -> Option<Vec<f64>> {
+        let u = super::start::free_start(self.contact, z0).ok()?;
+        Some(self.state(&u, z0))
     }
 
     fn add_drag(&self, a: f64, j: &mut Arrow<SymmetricBand>) {

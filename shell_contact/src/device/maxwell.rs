@@ -77,12 +77,12 @@ type Place = (usize, f64);
 
 impl Curve {
     fn new<P: Loading>(problem: &P, branch: &Branch) -> Self {
-        let root = problem.contact().groups().bending.sqrt();
         let device = problem.device();
         let column = |name: &str| branch.observables.iter().position(|n| n == name);
         let (force, energy) = (column("force"), column("energy_total"));
         let mut curve = Curve { p: Vec::new(), potential: Vec::new(), slope: Vec::new() };
-        let mut parameters = problem.contact().parameters_at(0.0);
+        let mut parameters = problem.parameters_at(0.0);
+        let root = problem.root(&parameters);
         for point in &branch.points {
             let value = |at: Option<usize>| at.map_or(f64::NAN, |k| point.observables[k]);
             parameters[0] = point.p;
@@ -183,8 +183,8 @@ fn polish<P: Loading>(
     let mut states = [start(a), start(b)];
     let reach = |(k, _): Place| (branch.points[k + 1].p - branch.points[k].p).abs();
     let (first, reach) = (at, 2.0 * (reach(a) + reach(b)));
-    let root = problem.contact().groups().bending.sqrt();
-    let mut p = problem.contact().parameters_at(at);
+    let mut p = problem.parameters_at(at);
+    let root = problem.root(&p);
     let mut last = f64::INFINITY;
     for _ in 0..MOST {
         p[0] = at;
@@ -193,10 +193,8 @@ fn polish<P: Loading>(
         for k in 0..2 {
             newton(problem, &mut states[k], &p, &NewtonSettings::default()).ok()?;
             z0[k] = problem.plate(&states[k], &p);
-            let inner = problem.contact().parameters_at(z0[k]);
-            let seen =
-                problem.contact().observation(problem.shell_part(&states[k]), &inner).ok()?;
-            (force[k], energy[k]) = (seen.force, seen.energy_total);
+            force[k] = problem.mean_force(&states[k], &p).ok()?;
+            energy[k] = problem.energy(&states[k], &p).ok()?;
             potential[k] = problem.potential(&states[k], &p).ok()?;
             slope[k] = problem.device().potential_slope(root, z0[k], force[k]);
         }
@@ -232,5 +230,6 @@ fn modes<P: Loading>(problem: &P, x: &[f64], p: &[f64]) -> Option<usize> {
     let mut hessian = problem.new_jacobian();
     problem.jacobian(x, p, &mut hessian).ok()?;
     let floor = f64::EPSILON * hessian.norm();
-    hessian.factor(floor).inertia.map(|(negative, _)| negative)
+    let inertia = hessian.factor(floor).inertia;
+    inertia.map(|(negative, _)| negative.saturating_sub(problem.multipliers()))
 }

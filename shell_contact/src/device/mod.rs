@@ -19,13 +19,11 @@ mod walker;
 
 pub use balance::{Balance, balance};
 pub use cycle::{Cycle, CycleError, CyclePoint, CycleSettings, Direction, JUMP, Jump, travel};
-pub use flow::{Motion, MotionError, Relaxation, RelaxationSettings};
+pub use flow::{Motion, MotionError, Relaxation, RelaxationSettings, Side};
 pub use loaded::LoadedProblem;
 pub use maxwell::{MaxwellPoint, maxwell_points};
 pub use start::{StartError, device_watches, free_start, loaded_start, trace_loaded};
 
-use crate::contact::ContactProblem;
-use crate::film::Potential;
 use continuation::{EvalError, Problem};
 
 /// What holds the plates.
@@ -109,26 +107,59 @@ impl Device {
     }
 }
 
-/// The contact problem under a device. The residual is the gradient of the total potential of half a
-/// shell with its device over `2π`; `p[0]` is the device's parameter.
+/// A shell between plates under a device. The residual is the gradient of the total potential of the
+/// shell (or half of one) with its device, over `2π`; `p[0]` is the device's parameter.
 pub trait Loading: Problem {
-    /// The interaction potential.
-    type Film: Potential;
     /// The device.
     fn device(&self) -> Device;
-    /// The shell without its device.
-    fn contact(&self) -> &ContactProblem<Self::Film>;
-    /// Height of the plate.
+    /// The case's parameters with the device's own at `value`.
+    fn parameters_at(&self, value: f64) -> Vec<f64>;
+    /// Half the distance of the plates, in `R0`: over a mirror-symmetric shell the plate's height.
     fn plate(&self, x: &[f64], p: &[f64]) -> f64;
+    /// Force on a plate in `√(χk_b)`, the mean where two plates carry different ones.
+    ///
+    /// # Errors
+    /// When the state is not admissible.
+    fn mean_force(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError>;
+    /// Its derivative along a direction in which the device's parameter moves by `dp`; NaN if it is
+    /// not known.
+    ///
+    /// # Errors
+    /// When the state is not admissible.
+    fn mean_force_along(&self, x: &[f64], p: &[f64], dx: &[f64], dp: f64)
+    -> Result<f64, EvalError>;
+    /// Total energy of the whole shell, in `χR0²`.
+    ///
+    /// # Errors
+    /// When the state is not admissible.
+    fn energy(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError>;
+    /// `h += a M`, `M` the matrix of the metric, which is that of the drag too.
+    fn add_drag(&self, a: f64, h: &mut Self::Jacobian);
+    /// The unknowns under a grip.
+    fn shell_part<'x>(&self, x: &'x [f64]) -> &'x [f64];
+    /// Force on a plate as it is reported: on the upper one.
+    ///
+    /// # Errors
+    /// When the state is not admissible.
+    fn force(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+        self.mean_force(x, p)
+    }
+    /// `√k_b`, in `√χR0`.
+    fn root(&self, p: &[f64]) -> f64;
     /// Total potential of the whole shell and both devices, in `χR0²`.
     ///
     /// # Errors
     /// When the state is not admissible.
-    fn potential(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError>;
-    /// `h += a M`, `M` the matrix of the metric, which is that of the drag too.
-    fn add_drag(&self, a: f64, h: &mut Self::Jacobian);
-    /// The unknowns of the shell.
-    fn shell_part<'x>(&self, x: &'x [f64]) -> &'x [f64] {
-        &x[..self.contact().dim()]
+    fn potential(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+        Ok(self.energy(x, p)? + self.device().potential(self.root(p), p[0], self.plate(x, p)))
+    }
+    /// The free shell between plates at half the distance `z0`, of a device from which plates can
+    /// fly away.
+    fn free(&self, _z0: f64) -> Option<Vec<f64>> {
+        None
+    }
+    /// The mirror image of a state, where it is a state of the same problem and may be another one.
+    fn mirrored(&self, _x: &[f64]) -> Option<Vec<f64>> {
+        None
     }
 }

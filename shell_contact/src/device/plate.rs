@@ -6,7 +6,7 @@ use crate::energy;
 use crate::film::Potential;
 use crate::plate;
 use continuation::linalg::SymmetricBand;
-use continuation::{EvalError, Matrix, ParamId};
+use continuation::{EvalError, Matrix, ParamId, Problem};
 use std::f64::consts::PI;
 
 impl<F: Potential> ContactProblem<F> {
@@ -57,22 +57,43 @@ impl<F: Potential> ContactProblem<F> {
 }
 
 impl<F: Potential> Loading for ContactProblem<F> {
-    type Film = F;
-
     fn device(&self) -> Device {
         Device::Grip
     }
 
-    fn contact(&self) -> &ContactProblem<F> {
-        self
+    fn parameters_at(&self, value: f64) -> Vec<f64> {
+        ContactProblem::parameters_at(self, value)
     }
 
     fn plate(&self, _: &[f64], p: &[f64]) -> f64 {
         p[parameter::Z0.0]
     }
 
-    fn potential(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+    fn mean_force(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+        Ok(-2.0 * PI / p[parameter::BENDING.0].sqrt() * self.plate_pull(x, p)?)
+    }
+
+    fn mean_force_along(
+        &self,
+        x: &[f64],
+        p: &[f64],
+        dx: &[f64],
+        dp: f64,
+    ) -> Result<f64, EvalError> {
+        let slope = self.observable_slope(0, x, p, parameter::Z0, dx, dp)?;
+        Ok(slope.unwrap_or(f64::NAN))
+    }
+
+    fn energy(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
         self.total_energy(x, p)
+    }
+
+    fn root(&self, p: &[f64]) -> f64 {
+        p[parameter::BENDING.0].sqrt()
+    }
+
+    fn shell_part<'x>(&self, x: &'x [f64]) -> &'x [f64] {
+        x
     }
 
     fn add_drag(&self, a: f64, h: &mut SymmetricBand) {

@@ -133,7 +133,7 @@ fn refined_counts(mut folds: Vec<DeviceFold>, counts: &[Option<usize>]) -> Vec<D
 }
 
 struct Search<'c, F: Potential> {
-    walker: Walker<'c, F>,
+    walker: Walker<'c, ContactProblem<F>>,
     device: Device,
 }
 

@@ -1,12 +1,10 @@
 //! Tangents and corrections on the curve of equilibria in the space of shell and plate height,
-//! where it has no folds of any device.
+//! where it has no folds of any device, or of shell and a device's parameter.
 
-use crate::contact::{ContactProblem, parameter};
-use crate::film::Potential;
-use crate::spline::HALF_BANDWIDTH;
-use continuation::linalg::{Arrow, SymmetricBand};
-use continuation::{EvalError, Matrix, Problem};
-use std::f64::consts::PI;
+use super::Loading;
+use crate::contact::parameter;
+use continuation::linalg::Arrow;
+use continuation::{EvalError, Matrix};
 
 /// A place on the curve: shell and plate.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,22 +26,22 @@ const MOST: usize = 20;
 /// Corrections shorter than this have converged.
 const CONVERGED: f64 = 1e-13;
 
-pub(super) struct Walker<'c, F: Potential> {
-    contact: &'c ContactProblem<F>,
+pub(super) struct Walker<'c, P: Loading> {
+    problem: &'c P,
     p: Vec<f64>,
-    matrix: Arrow<SymmetricBand>,
+    matrix: Arrow<P::Jacobian>,
     x: Vec<f64>,
     /// `M` times the direction by which states are compared, and its part of the plate.
     row: Vec<f64>,
 }
 
-impl<'c, F: Potential> Walker<'c, F> {
-    pub(super) fn new(contact: &'c ContactProblem<F>) -> Self {
-        let n = contact.dim();
+impl<'c, P: Loading> Walker<'c, P> {
+    pub(super) fn new(problem: &'c P) -> Self {
+        let n = problem.dim();
         Walker {
-            contact,
-            p: contact.parameters_at(1.0),
-            matrix: Arrow::new(SymmetricBand::new(n, HALF_BANDWIDTH), 1),
+            problem,
+            p: problem.parameters_at(1.0),
+            matrix: Arrow::new(problem.new_jacobian(), 1),
             x: vec![0.0; n + 1],
             row: vec![0.0; n + 1],
         }
@@ -51,18 +49,18 @@ impl<'c, F: Potential> Walker<'c, F> {
 
     /// `√k_b`.
     pub(super) fn root(&self) -> f64 {
-        self.p[parameter::BENDING.0].sqrt()
+        self.problem.root(&self.p)
     }
 
     pub(super) fn force(&mut self, at: &Place) -> Result<f64, EvalError> {
         self.p[0] = at.z0;
-        Ok(-2.0 * PI / self.root() * self.contact.plate_pull(&at.u, &self.p)?)
+        self.problem.mean_force(&at.u, &self.p)
     }
 
     /// Directions are compared with this one from now on.
     pub(super) fn look_along(&mut self, du: &[f64], dz0: f64) {
         let n = du.len();
-        self.contact.metric(du, &mut self.row[..n]);
+        self.problem.metric(du, &mut self.row[..n]);
         self.row[n] = dz0;
     }
 
@@ -83,9 +81,9 @@ impl<'c, F: Potential> Walker<'c, F> {
     fn assemble(&mut self, at: &Place) -> Result<(), EvalError> {
         let n = at.u.len();
         self.p[0] = at.z0;
-        self.contact.linearise(&at.u, &self.p, &mut self.x[..n], self.matrix.core_mut())?;
+        self.problem.linearise(&at.u, &self.p, &mut self.x[..n], self.matrix.core_mut())?;
         let column = self.matrix.column_mut(0);
-        self.contact.parameter_derivative(&at.u, &self.p, parameter::Z0, column)?;
+        self.problem.parameter_derivative(&at.u, &self.p, parameter::Z0, column)?;
         self.matrix.row_mut(0).copy_from_slice(&self.row[..n]);
         self.matrix.set_corner(0, 0, self.row[n]);
         self.matrix.factor(f64::EPSILON);
@@ -101,12 +99,12 @@ impl<'c, F: Potential> Walker<'c, F> {
         self.matrix.solve(&mut self.x);
         let (mut du, mut dz0) = (self.x[..n].to_vec(), self.x[n]);
         let mut m = vec![0.0; n];
-        self.contact.metric(&du, &mut m);
+        self.problem.metric(&du, &mut m);
         let size = (dot(&m, &du) + dz0 * dz0).sqrt();
         du.iter_mut().for_each(|d| *d /= size);
         dz0 /= size;
-        let slope = self.contact.observable_slope(0, &at.u, &self.p, parameter::Z0, &du, dz0)?;
-        Ok(Tangent { du, dz0, dforce: slope.unwrap_or(f64::NAN) })
+        let dforce = self.problem.mean_force_along(&at.u, &self.p, &du, dz0)?;
+        Ok(Tangent { du, dz0, dforce })
     }
 
     /// The state of the curve in the plane normal to the direction at this distance from `base`,

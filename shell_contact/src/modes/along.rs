@@ -4,8 +4,10 @@
 //! modes looked for here do not feel the device. Every point of the branch is counted, and a count
 //! that differs between neighbours is traced to the state where it changes (module `locate`).
 
-use super::locate::{Chord, Class, Locator};
-use super::{ModeCount, ModeShape, Parity, Scan};
+use super::locate::{Chord, Class, HalfCounter, Locator, WholeCounter};
+use super::{
+    AsymmetricModes, ModeCount, ModeShape, Parity, Scan, WholeModes, WholeScan, WholeShell,
+};
 use crate::contact::ContactProblem;
 use crate::film::Potential;
 use continuation::{Branch, EvalError, Problem};
@@ -33,14 +35,14 @@ pub struct SymmetryBreaking {
     pub after_point: usize,
     /// Where between the two, from 0 to 1.
     pub share: f64,
-    /// Plate distance.
+    /// Plate distance; of a branch from pole to pole its own parameter.
     pub z0: f64,
-    /// Unknowns of the contact problem.
+    /// Unknowns of the problem.
     pub u: Vec<f64>,
     /// Waves around the axis.
     pub n: usize,
-    /// Parity of the mode.
-    pub parity: Parity,
+    /// Parity of the mode, if it has one: about a state from pole to pole it may have none.
+    pub parity: Option<Parity>,
     /// Unstable modes of this class before, along the branch.
     pub modes_before: usize,
     /// And after.
@@ -75,15 +77,16 @@ pub fn scan_branch<F: Potential>(
     settings: &ScanSettings,
     observer: &mut dyn FnMut(usize) -> ControlFlow<()>,
 ) -> Result<Scanned, EvalError> {
-    let mut locator = Locator::new(problem);
+    let modes = AsymmetricModes::new(problem.mesh());
+    let mut locator = Locator::new(HalfCounter { problem, modes });
     let mut scanned = Scanned::default();
     let height = branch.observables.iter().position(|name| name == "z0");
     let mut before: Option<(Vec<f64>, f64)> = None;
     for (index, point) in branch.points.iter().enumerate() {
         let z0 = height.map_or(point.p, |k| point.observables[k]);
         let u = &point.u[..problem.dim().min(point.u.len())];
-        locator.modes.assemble(problem, u, &problem.parameters_at(z0))?;
-        let scan = locator.modes.scan(settings.max_n);
+        locator.counter.modes.assemble(problem, u, &problem.parameters_at(z0))?;
+        let scan = locator.counter.modes.scan(settings.max_n);
         if let (Some((from, at)), Some(old)) = (&before, scanned.points.last()) {
             let changed: Vec<Class> = classes(old, &scan)
                 .filter_map(|(n, parity)| {
@@ -102,10 +105,76 @@ pub fn scan_branch<F: Potential>(
             break;
         }
     }
-    scanned.events.sort_by(|a, b| {
-        (a.after_point, a.share).partial_cmp(&(b.after_point, b.share)).unwrap_or(a.n.cmp(&b.n))
-    });
+    scanned.sort();
     Ok(scanned)
+}
+
+/// The same of a branch from pole to pole, in its own parameter. Axisymmetric modes are among those that
+/// the branch counts itself: [`Scan::antisymmetric`] is zero, and of either parity together the counts
+/// of waves stand with [`Parity::Symmetric`].
+///
+/// # Errors
+/// When a point of the branch is no admissible state of the problem.
+pub fn scan_whole_branch<P: WholeShell>(
+    problem: &P,
+    branch: &Branch,
+    settings: &ScanSettings,
+    observer: &mut dyn FnMut(usize) -> ControlFlow<()>,
+) -> Result<Scanned, EvalError> {
+    let modes = WholeModes::new(problem.half_mesh());
+    let mut locator = Locator::new(WholeCounter { problem, modes });
+    let mut scanned = Scanned::default();
+    for (index, point) in branch.points.iter().enumerate() {
+        let p = problem.parameters_at(point.p);
+        problem.assemble_modes(&point.u, &p, &mut locator.counter.modes)?;
+        let scan = Scan::of_whole(locator.counter.modes.scan(settings.max_n));
+        let before = index.checked_sub(1).map(|k| &branch.points[k]);
+        if let (Some(before), Some(old)) = (before, scanned.points.last()) {
+            let waves = old.n_max.max(scan.n_max);
+            let changed: Vec<Class> = (1..=waves)
+                .filter_map(|n| {
+                    let counts =
+                        [old, &scan].map(|scan| class(scan, n, Parity::Symmetric).negative);
+                    let differ = counts[0] != counts[1];
+                    differ.then(|| Class::new(n, Parity::Symmetric, counts))
+                })
+                .collect();
+            if !changed.is_empty() {
+                let (ends, at) = ([&before.u[..], &point.u], [before.p, point.p]);
+                let chord = Chord::new(problem, ends, at, index - 1);
+                locator.locate(&chord, changed, settings, &mut scanned);
+            }
+        }
+        scanned.points.push(scan);
+        if observer(index + 1).is_break() {
+            break;
+        }
+    }
+    scanned.sort();
+    Ok(scanned)
+}
+
+impl Scanned {
+    /// Events in order along the branch.
+    fn sort(&mut self) {
+        self.events.sort_by(|a, b| {
+            (a.after_point, a.share).partial_cmp(&(b.after_point, b.share)).unwrap_or(a.n.cmp(&b.n))
+        });
+    }
+}
+
+impl Scan {
+    fn of_whole(scan: WholeScan) -> Scan {
+        let none = ModeCount { negative: 0, certain: true };
+        Scan {
+            antisymmetric: 0,
+            modes: scan.modes,
+            first_n: scan.first_n,
+            n_max: scan.n_max,
+            certain: scan.certain,
+            by_wave: scan.by_wave.into_iter().map(|count| [count, none]).collect(),
+        }
+    }
 }
 
 /// All classes of two scans.

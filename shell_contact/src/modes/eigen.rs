@@ -4,6 +4,7 @@
 use super::ends::{Ends, Neutral};
 use super::{AsymmetricModes, ModeCount, Parity};
 use continuation::Matrix;
+use continuation::linalg::SymmetricBand;
 
 /// Inverse iterations: more are of no use, a cluster then holds any vector of its space.
 const ITERATIONS: usize = 60;
@@ -15,7 +16,7 @@ const BESIDE: f64 = 1e-3;
 const SETTLED: f64 = 1e-13;
 
 /// The same where an eigenvalue only guides a bisection.
-const LOCATED: f64 = 1e-9;
+pub(super) const LOCATED: f64 = 1e-9;
 
 /// Shifts beyond this are not tried: the stiffest modes that a shell has are far below.
 const FARTHEST: f64 = 1e9;
@@ -35,6 +36,24 @@ pub struct ModeShape {
     pub v: Vec<f64>,
     /// Axial amplitude, times `cos nφ`.
     pub w: Vec<f64>,
+}
+
+impl ModeShape {
+    pub(super) fn normalised(mut self) -> ModeShape {
+        let largest =
+            |x: &[f64]| x.iter().fold(0.0_f64, |m, &x| if x.abs() > m.abs() { x } else { m });
+        let all = [largest(&self.u), largest(&self.v)];
+        let mut by = largest(&self.w);
+        if by.abs() < 1e-6 * largest(&all).abs() {
+            by = largest(&all);
+        }
+        if by != 0.0 {
+            for x in [&mut self.u, &mut self.v, &mut self.w].into_iter().flatten() {
+                *x /= by;
+            }
+        }
+        self
+    }
 }
 
 /// An eigenvalue and its mode.
@@ -162,35 +181,8 @@ impl AsymmetricModes<'_> {
         x: &mut Vec<f64>,
     ) -> f64 {
         self.masses.matrix(ends, n, &mut self.mass);
-        let dim = self.band.dim();
-        // any vector without symmetry; M keeps it to the unknowns of the class
-        let start = |i: usize| 1.0 + ((i * 7919) % 1009) as f64 / 1009.0;
-        // some of it in any case: the mode that was nearest to zero may have been another
-        let largest = x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let known = x.len() == dim && largest > 0.0 && largest.is_finite();
-        let share = if known { BESIDE * largest } else { 1.0 };
-        if !known {
-            x.clear();
-            x.resize(dim, 0.0);
-        }
-        x.iter_mut().enumerate().for_each(|(i, x)| *x += share * start(i));
-        let mut y = vec![0.0; dim];
-        let mut value = f64::NAN;
-        for _ in 0..ITERATIONS {
-            self.mass.mul(x, &mut y);
-            let size = dot(x, &y).sqrt();
-            y.iter_mut().for_each(|y| *y /= size);
-            x.copy_from_slice(&y);
-            self.solve(x);
-            // y = Mx̂ of unit size: 1/(μ − shift) = yᵀ K⁻¹ y
-            let next = shift + 1.0 / (dot(x, &y));
-            let settled = (next - value).abs() <= tolerance * (next.abs() + shift.abs());
-            value = next;
-            if settled {
-                break;
-            }
-        }
-        value
+        let AsymmetricModes { mass, band, scale, .. } = self;
+        iterate(mass, |x| super::solve(band, scale, x), shift, tolerance, x)
     }
 
     /// `xᵀKx/xᵀMx`, whose error is the square of the vector's. The band's factors are lost.
@@ -225,21 +217,49 @@ impl AsymmetricModes<'_> {
                 })
                 .collect()
         };
-        let mut shape = ModeShape { u: field(0), v: field(1), w: field(2), s };
-        let largest =
-            |x: &[f64]| x.iter().fold(0.0_f64, |m, &x| if x.abs() > m.abs() { x } else { m });
-        let all = [largest(&shape.u), largest(&shape.v)];
-        let mut by = largest(&shape.w);
-        if by.abs() < 1e-6 * largest(&all).abs() {
-            by = largest(&all);
-        }
-        if by != 0.0 {
-            for x in [&mut shape.u, &mut shape.v, &mut shape.w].into_iter().flatten() {
-                *x /= by;
-            }
-        }
-        shape
+        ModeShape { u: field(0), v: field(1), w: field(2), s }.normalised()
     }
+}
+
+/// The eigenvalue nearest to `shift` of a matrix `K` with the mass, `solve` being `(K − shift M)⁻¹`, until
+/// it changes by less than `tolerance`, relative; begins with the vector `x`, unless it is empty, and
+/// leaves the mode in it.
+pub(super) fn iterate(
+    mass: &SymmetricBand,
+    mut solve: impl FnMut(&mut [f64]),
+    shift: f64,
+    tolerance: f64,
+    x: &mut Vec<f64>,
+) -> f64 {
+    let dim = mass.dim();
+    // any vector without symmetry; M keeps it to the unknowns of the class
+    let start = |i: usize| 1.0 + ((i * 7919) % 1009) as f64 / 1009.0;
+    // some of it in any case: the mode that was nearest to zero may have been another
+    let largest = x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let known = x.len() == dim && largest > 0.0 && largest.is_finite();
+    let share = if known { BESIDE * largest } else { 1.0 };
+    if !known {
+        x.clear();
+        x.resize(dim, 0.0);
+    }
+    x.iter_mut().enumerate().for_each(|(i, x)| *x += share * start(i));
+    let mut y = vec![0.0; dim];
+    let mut value = f64::NAN;
+    for _ in 0..ITERATIONS {
+        mass.mul(x, &mut y);
+        let size = dot(x, &y).sqrt();
+        y.iter_mut().for_each(|y| *y /= size);
+        x.copy_from_slice(&y);
+        solve(x);
+        // y = Mx̂ of unit size: 1/(μ − shift) = yᵀ K⁻¹ y
+        let next = shift + 1.0 / (dot(x, &y));
+        let settled = (next - value).abs() <= tolerance * (next.abs() + shift.abs());
+        value = next;
+        if settled {
+            break;
+        }
+    }
+    value
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -335,6 +335,11 @@ impl Masses {
         Masses { elements: (0..mesh.elements()).map(of).collect() }
     }
 
+    /// Functions by functions, of each element.
+    pub(super) fn elements(&self) -> &[[[f64; 4]; 4]] {
+        &self.elements
+    }
+
     /// Sets `out` to the mass matrix of the class.
     pub(super) fn matrix(&self, ends: &Ends, n: usize, out: &mut SymmetricBand) {
         out.set_zero();

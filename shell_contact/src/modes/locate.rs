@@ -8,11 +8,11 @@
 //! waves, are evaluated at the same states.
 
 use super::along::{ScanSettings, Scanned, SymmetryBreaking};
-use super::{AsymmetricModes, Parity};
-use crate::contact::{ContactProblem, parameter};
+use super::{AsymmetricModes, ModeCount, ModeShape, Parity, WholeModes, WholeShell};
+use crate::contact::ContactProblem;
 use crate::film::Potential;
-use continuation::Problem;
-use continuation::linalg::{Bordered, SymmetricBand};
+use continuation::linalg::Bordered;
+use continuation::{EvalError, ParamId, Problem};
 
 /// Newton steps of a state between two points; quadratic convergence from a chord needs four.
 const NEWTON_STEPS: usize = 12;
@@ -33,6 +33,84 @@ const ASIDE: [f64; 4] = [0.25, 0.75, 0.1, 0.9];
 /// otherwise the next step is a bisection. Regula falsi on a curved function gains less.
 const GAIN: f64 = 8.0;
 
+/// The parameter of the branch.
+const PARAMETER: ParamId = ParamId(0);
+
+/// States of a curve, and the modes about them.
+pub(super) trait Counter {
+    /// The problem whose states they are.
+    type Problem: Problem;
+    fn problem(&self) -> &Self::Problem;
+    fn parameters_at(&self, value: f64) -> Vec<f64>;
+    /// Takes a state.
+    fn assemble(&mut self, u: &[f64], value: f64) -> Result<(), EvalError>;
+    /// The count of a class and its eigenvalue nearest to zero, whose mode `x` becomes.
+    fn count_and_value(&mut self, n: usize, parity: Parity, x: &mut Vec<f64>) -> (ModeCount, f64);
+    /// The amplitudes of a mode and its parity.
+    fn shape_of(&self, n: usize, parity: Parity, x: &[f64]) -> (ModeShape, Option<Parity>);
+}
+
+/// States of the half model: two classes for each number of waves.
+pub(super) struct HalfCounter<'a, F: Potential> {
+    pub(super) problem: &'a ContactProblem<F>,
+    pub(super) modes: AsymmetricModes<'a>,
+}
+
+impl<F: Potential> Counter for HalfCounter<'_, F> {
+    type Problem = ContactProblem<F>;
+
+    fn problem(&self) -> &ContactProblem<F> {
+        self.problem
+    }
+
+    fn parameters_at(&self, value: f64) -> Vec<f64> {
+        self.problem.parameters_at(value)
+    }
+
+    fn assemble(&mut self, u: &[f64], value: f64) -> Result<(), EvalError> {
+        self.modes.assemble(self.problem, u, &self.problem.parameters_at(value))
+    }
+
+    fn count_and_value(&mut self, n: usize, parity: Parity, x: &mut Vec<f64>) -> (ModeCount, f64) {
+        self.modes.count_and_value(n, parity, x)
+    }
+
+    fn shape_of(&self, n: usize, parity: Parity, x: &[f64]) -> (ModeShape, Option<Parity>) {
+        (self.modes.shape_of(n, parity, x), Some(parity))
+    }
+}
+
+/// States of the whole meridian: one class, whose parity is that of the mode if it has one.
+pub(super) struct WholeCounter<'a, P: WholeShell> {
+    pub(super) problem: &'a P,
+    pub(super) modes: WholeModes<'a>,
+}
+
+impl<P: WholeShell> Counter for WholeCounter<'_, P> {
+    type Problem = P;
+
+    fn problem(&self) -> &P {
+        self.problem
+    }
+
+    fn parameters_at(&self, value: f64) -> Vec<f64> {
+        self.problem.parameters_at(value)
+    }
+
+    fn assemble(&mut self, u: &[f64], value: f64) -> Result<(), EvalError> {
+        let p = self.problem.parameters_at(value);
+        self.problem.assemble_modes(u, &p, &mut self.modes)
+    }
+
+    fn count_and_value(&mut self, n: usize, _: Parity, x: &mut Vec<f64>) -> (ModeCount, f64) {
+        self.modes.count_and_value(n, x)
+    }
+
+    fn shape_of(&self, n: usize, _: Parity, x: &[f64]) -> (ModeShape, Option<Parity>) {
+        (self.modes.shape_of(n, x), self.modes.parity_of(x))
+    }
+}
+
 /// Two neighbouring points.
 pub(super) struct Chord<'a> {
     ends: [&'a [f64]; 2],
@@ -44,8 +122,8 @@ pub(super) struct Chord<'a> {
 
 impl<'a> Chord<'a> {
     /// From a point, the branch's number `after_point`, to the next.
-    pub(super) fn new<F: Potential>(
-        problem: &ContactProblem<F>,
+    pub(super) fn new<P: Problem>(
+        problem: &P,
         ends: [&'a [f64]; 2],
         z0: [f64; 2],
         after_point: usize,
@@ -130,23 +208,21 @@ struct State {
     u: Vec<f64>,
 }
 
-/// Finds changes of counts; its [`AsymmetricModes`] serve the points too.
-pub(super) struct Locator<'a, F: Potential> {
-    problem: &'a ContactProblem<F>,
-    pub(super) modes: AsymmetricModes<'a>,
-    jacobian: SymmetricBand,
+/// Finds changes of counts; its modes serve the points too.
+pub(super) struct Locator<C: Counter> {
+    pub(super) counter: C,
+    jacobian: <C::Problem as Problem>::Jacobian,
     bordered: Bordered,
     residual: Vec<f64>,
     states: Vec<State>,
 }
 
-impl<'a, F: Potential> Locator<'a, F> {
-    pub(super) fn new(problem: &'a ContactProblem<F>) -> Self {
-        let n = problem.dim();
+impl<C: Counter> Locator<C> {
+    pub(super) fn new(counter: C) -> Self {
+        let n = counter.problem().dim();
         Locator {
-            problem,
-            modes: AsymmetricModes::new(problem.mesh()),
-            jacobian: problem.new_jacobian(),
+            jacobian: counter.problem().new_jacobian(),
+            counter,
             bordered: Bordered::new(n, 1),
             residual: vec![0.0; n],
             states: Vec::new(),
@@ -165,8 +241,7 @@ impl<'a, F: Potential> Locator<'a, F> {
         self.states.clear();
         for end in [1, 0] {
             let state = State { share: end as f64, z0: chord.z0[end], u: chord.ends[end].to_vec() };
-            let p = self.problem.parameters_at(state.z0);
-            let known = end == 1 || self.modes.assemble(self.problem, &state.u, &p).is_ok();
+            let known = end == 1 || self.counter.assemble(&state.u, state.z0).is_ok();
             self.states.push(state);
             if known {
                 for class in &mut classes {
@@ -206,14 +281,14 @@ impl<'a, F: Potential> Locator<'a, F> {
             let class = &classes[0];
             let [lo, hi] = [&class.samples[at], &class.samples[at + 1]];
             let nearer = if lo.value.abs() < hi.value.abs() { lo } else { hi };
-            let shape = self.modes.shape_of(class.n, class.parity, &nearer.mode);
+            let (shape, parity) = self.counter.shape_of(class.n, class.parity, &nearer.mode);
             events.push(SymmetryBreaking {
                 after_point: chord.after_point,
                 share: nearer.share,
                 z0: nearer.z0,
                 u: self.states[nearer.state].u.clone(),
                 n: class.n,
-                parity: class.parity,
+                parity,
                 modes_before: lo.count,
                 modes_after: hi.count,
                 error_estimate: (hi.z0 - lo.z0).abs().max(f64::EPSILON),
@@ -246,7 +321,8 @@ impl<'a, F: Potential> Locator<'a, F> {
             let near = 0.25 * settings.tolerance / chord.rise().abs().max(1e-9);
             let aim = if lo.value.abs() < hi.value.abs() { near } else { -near };
             let guess = classes[0].root(at) + aim;
-            let turns = lo.count.abs_diff(hi.count) == 1 && lo.value * hi.value < 0.0;
+            // also where several turn nearly together, as those of both parities do
+            let turns = lo.value * hi.value < 0.0;
             let useful = interpolate && turns && guess > lo.share && guess < hi.share;
             let start = lo.share;
             let smaller = lo.value.abs().min(hi.value.abs());
@@ -287,7 +363,7 @@ impl<'a, F: Potential> Locator<'a, F> {
     /// is not kept.
     fn sample(&mut self, class: &mut Class, index: usize) -> bool {
         let State { share, z0, .. } = self.states[index];
-        let (count, value) = self.modes.count_and_value(class.n, class.parity, &mut class.mode);
+        let (count, value) = self.counter.count_and_value(class.n, class.parity, &mut class.mode);
         let end = share == 0.0 || share == 1.0;
         if count.certain || end {
             let count = if end { class.counts[share as usize] } else { count.negative };
@@ -300,7 +376,6 @@ impl<'a, F: Potential> Locator<'a, F> {
 
     /// The state at a share of the chord, its modes assembled.
     fn state(&mut self, chord: &Chord<'_>, share: f64) -> Option<State> {
-        let problem = self.problem;
         // between the two known states around it
         let known = |side: f64| {
             let on_side = self.states.iter().filter(move |one| side * (one.share - share) >= 0.0);
@@ -313,12 +388,11 @@ impl<'a, F: Potential> Locator<'a, F> {
         self.bordered.row_mut(0).copy_from_slice(&chord.normal);
         self.bordered.set_corner(0, 0, chord.rise());
         let mut last = f64::INFINITY;
+        let problem = self.counter.problem();
         for step in 0.. {
-            let p = problem.parameters_at(z0);
+            let p = self.counter.parameters_at(z0);
             problem.linearise(&u, &p, &mut self.residual, &mut self.jacobian).ok()?;
-            problem
-                .parameter_derivative(&u, &p, parameter::Z0, self.bordered.column_mut(0))
-                .ok()?;
+            problem.parameter_derivative(&u, &p, PARAMETER, self.bordered.column_mut(0)).ok()?;
             self.bordered.factor(&mut self.jacobian);
             let mut g = [0.0];
             self.bordered.solve(&mut self.jacobian, &mut self.residual, &mut g);
@@ -333,7 +407,7 @@ impl<'a, F: Potential> Locator<'a, F> {
             }
             last = size;
         }
-        self.modes.assemble(problem, &u, &problem.parameters_at(z0)).ok()?;
+        self.counter.assemble(&u, z0).ok()?;
         Some(State { share, z0, u })
     }
 }

@@ -52,10 +52,11 @@ mod ends;
 mod inertia;
 mod locate;
 mod whole;
+mod whole_eigen;
 
-pub use along::{ScanSettings, Scanned, SymmetryBreaking, scan_branch};
+pub use along::{ScanSettings, Scanned, SymmetryBreaking, scan_branch, scan_whole_branch};
 pub use eigen::{Mode, ModeShape};
-pub use whole::{WholeModes, WholeScan};
+pub use whole::{WholeModes, WholeScan, WholeShell};
 
 use crate::contact::{ContactProblem, with_law};
 use crate::density::Coefficients;
@@ -317,13 +318,13 @@ impl<'a> AsymmetricModes<'a> {
         }
         count_negative(&mut self.band, &mut self.scale)
     }
+}
 
-    /// `x ← (K_n − shift M)⁻¹ x` with the last factors.
-    fn solve(&mut self, x: &mut [f64]) {
-        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
-        self.band.solve(x);
-        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
-    }
+/// `x ← K⁻¹ x` with the factors of a band that `count_negative` scaled.
+fn solve(band: &mut SymmetricBand, scale: &[f64], x: &mut [f64]) {
+    x.iter_mut().zip(scale).for_each(|(x, s)| *x *= s);
+    band.solve(x);
+    x.iter_mut().zip(scale).for_each(|(x, s)| *x *= s);
 }
 
 /// Factors a band, scaled to a unit diagonal by `scale`, and counts.

@@ -6,15 +6,17 @@
 //! poles, and nothing is imposed at the equator. For `n = 1` both neutral motions are excluded by
 //! `u − v = 0` at both poles, where they have different values. Axisymmetric modes are the problem's own.
 
-use super::elements::{self, AT_POLE, Column, Element, ROWS};
+use super::elements::{self, AT_POLE, Column, Element, Masses, ROWS};
 use super::ends::{Ends, FIELDS, HALF_BANDWIDTH, Neutral, Slot};
 use super::{Extent, ModeCount, Parity, bound, count_negative};
 use crate::contact::with_law;
 use crate::density::Coefficients;
+use crate::device::Loading;
 use crate::film::Potential;
+use crate::gas::Gas;
 use crate::membrane::Membrane;
 use crate::meridian::Mesh;
-use crate::two_plates::{Side, TwoPlatesProblem};
+use crate::two_plates::{Side, SupportedProblem, TwoPlatesProblem};
 use continuation::EvalError;
 use continuation::linalg::SymmetricBand;
 
@@ -36,15 +38,66 @@ pub struct WholeScan {
 /// The second variation about a state of the whole shell, for every `n ≥ 1`.
 #[derive(Debug, Clone)]
 pub struct WholeModes<'a> {
-    mesh: &'a Mesh,
+    pub(super) mesh: &'a Mesh,
     /// What meets no pole, by power of `n²`: columns of the unknowns.
     inside: [Vec<Column>; 3],
     /// The elements next to either pole.
     poles: [[Element; AT_POLE]; 2],
     columns: Vec<Column>,
-    band: SymmetricBand,
-    scale: Vec<f64>,
+    pub(super) band: SymmetricBand,
+    pub(super) masses: Masses,
+    pub(super) mass: SymmetricBand,
+    pub(super) scale: Vec<f64>,
     bound: f64,
+}
+
+/// A shell from pole to pole whose states have modes with waves, whatever holds it and its plates.
+pub trait WholeShell: Loading {
+    /// The mesh of either half.
+    fn half_mesh(&self) -> &Mesh;
+    /// Hands a state to the modes.
+    ///
+    /// # Errors
+    /// When the state is not admissible.
+    fn assemble_modes(
+        &self,
+        x: &[f64],
+        p: &[f64],
+        modes: &mut WholeModes<'_>,
+    ) -> Result<(), EvalError>;
+}
+
+impl<T: Potential, B: Potential> WholeShell for TwoPlatesProblem<T, B> {
+    fn half_mesh(&self) -> &Mesh {
+        self.mesh()
+    }
+
+    fn assemble_modes(
+        &self,
+        x: &[f64],
+        p: &[f64],
+        modes: &mut WholeModes<'_>,
+    ) -> Result<(), EvalError> {
+        modes.assemble(self, x, p)
+    }
+}
+
+/// Held, the equator stays in the mid-plane on the average over `φ` only: modes with waves are not held.
+/// Nor do they move a plate on a spring.
+impl<T: Potential, B: Potential> WholeShell for SupportedProblem<'_, T, B> {
+    fn half_mesh(&self) -> &Mesh {
+        self.shell().mesh()
+    }
+
+    fn assemble_modes(
+        &self,
+        x: &[f64],
+        p: &[f64],
+        modes: &mut WholeModes<'_>,
+    ) -> Result<(), EvalError> {
+        let (u, c, gas) = self.inner(x, p)?;
+        modes.assemble_between(self.shell(), u, &c, &gas)
+    }
 }
 
 impl<'a> WholeModes<'a> {
@@ -58,6 +111,8 @@ impl<'a> WholeModes<'a> {
             poles: [[Element::ZERO; AT_POLE], [Element::ZERO; AT_POLE]],
             columns: zero,
             band: SymmetricBand::new(unknowns, HALF_BANDWIDTH),
+            masses: Masses::new(mesh),
+            mass: SymmetricBand::new(unknowns, HALF_BANDWIDTH),
             scale: vec![1.0; unknowns],
             bound: 0.0,
         }
@@ -73,8 +128,19 @@ impl<'a> WholeModes<'a> {
         u: &[f64],
         p: &[f64],
     ) -> Result<(), EvalError> {
-        problem.admissible(u, p)?;
         let (c, gas) = problem.coefficients(u.len(), p)?;
+        self.assemble_between(problem, u, &c, &gas)
+    }
+
+    /// The same with plates at heights of their own.
+    fn assemble_between<T: Potential, B: Potential>(
+        &mut self,
+        problem: &TwoPlatesProblem<T, B>,
+        u: &[f64],
+        c: &[Coefficients; 2],
+        gas: &Gas,
+    ) -> Result<(), EvalError> {
+        problem.admissible_between(u, c)?;
         let excess = gas.excess(0.5 * problem.volume(u)?);
         self.inside.iter_mut().for_each(|columns| columns.fill([0.0; ROWS]));
         self.bound = 0.0;
@@ -193,9 +259,9 @@ impl<'a> WholeModes<'a> {
 
 /// Where the coefficients of a half stand among the unknowns.
 #[derive(Clone, Copy)]
-struct Place {
-    elements: usize,
-    side: Side,
+pub(super) struct Place {
+    pub(super) elements: usize,
+    pub(super) side: Side,
 }
 
 impl Place {
@@ -223,7 +289,7 @@ impl Place {
     }
 
     /// The same of one that may.
-    fn slot(self, ends: &Ends, e: usize, k: usize) -> Slot {
+    pub(super) fn slot(self, ends: &Ends, e: usize, k: usize) -> Slot {
         let (j, f) = (e as isize - 1 + (k / FIELDS) as isize, k % FIELDS);
         if j > 1 {
             return Slot::new(&[(FIELDS * self.knot(j) + f, self.sign(f))]);

@@ -195,6 +195,16 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         Ok([plate::pull(&top, upper, u, &c[0])?, plate::pull(&bottom, lower, u, &c[1])?])
     }
 
+    /// Mean of the forces on both plates, in `√(χk_b)`.
+    pub(super) fn mean_force_between(
+        &self,
+        u: &[f64],
+        c: &[Coefficients; 2],
+    ) -> Result<f64, EvalError> {
+        let [top, bottom] = self.pulls(u, c)?;
+        Ok(0.5 * plate::force_factor(c[0].bending) * (top + bottom))
+    }
+
     /// The parts of the energy of the whole shell.
     pub(super) fn parts(&self, u: &[f64], c: &[Coefficients; 2]) -> Result<Parts<f64>, EvalError> {
         let ([top, bottom], (upper, lower)) = (self.halves(), &self.potentials);
@@ -219,7 +229,17 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     /// When the state is not admissible.
     pub fn total_energy(&self, u: &[f64], p: &[f64]) -> Result<f64, EvalError> {
         let (c, gas) = self.coefficients(u.len(), p)?;
-        let parts = self.parts(u, &c)?;
+        self.energy_between(u, &c, &gas)
+    }
+
+    /// [`Self::total_energy`] with plates at heights of their own.
+    pub(super) fn energy_between(
+        &self,
+        u: &[f64],
+        c: &[Coefficients; 2],
+        gas: &Gas,
+    ) -> Result<f64, EvalError> {
+        let parts = self.parts(u, c)?;
         let elastic = parts.stretching + parts.bending + parts.film;
         let gas = 2.0 * gas.energy(0.5 * parts.volume);
         Ok(2.0 * PI * (elastic + gas + c[0].surface_tension * parts.area))

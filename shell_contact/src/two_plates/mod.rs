@@ -46,6 +46,7 @@ mod certify;
 mod evaluate;
 mod fork;
 mod half;
+mod loading;
 mod observe;
 mod pairs;
 mod search;
@@ -53,11 +54,13 @@ mod supported;
 
 pub use fork::{ForkError, follow_asymmetric, leave_symmetry};
 pub use half::{Half, Side};
+pub use loading::stable_start;
 pub use observe::{NAMES, TwoPlatesObservation};
 pub use pairs::{SpringPair, spring_pairs};
 pub use search::{Unconnected, next_unconnected};
 pub use supported::{Support, SupportedProblem};
 
+use crate::density::Coefficients;
 use crate::energy;
 use crate::film::{FourTwo, Potential};
 use crate::meridian::{Mesh, add_mass};
@@ -261,8 +264,17 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     /// Says what is violated.
     pub fn admissible(&self, u: &[f64], p: &[f64]) -> Result<(), EvalError> {
         let (c, _) = self.coefficients(u.len(), p)?;
+        self.admissible_between(u, &c)
+    }
+
+    /// [`Self::admissible`] with plates at heights of their own.
+    pub(crate) fn admissible_between(
+        &self,
+        u: &[f64],
+        c: &[Coefficients; 2],
+    ) -> Result<(), EvalError> {
         self.volume(u)?;
-        for (half, c) in self.halves().iter().zip(&c) {
+        for (half, c) in self.halves().iter().zip(c) {
             energy::is_clear(half, u, c.plate)?;
         }
         self.check_poles(u)

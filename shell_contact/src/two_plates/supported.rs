@@ -127,11 +127,18 @@ impl<'c, T: Potential, B: Potential> SupportedProblem<'c, T, B> {
         p: &[f64],
     ) -> Result<(TwoPlatesObservation, f64), EvalError> {
         let (u, c, gas) = self.inner(x, p)?;
-        let z0 = match self.support.spring {
-            Some(_) => 0.5 * (x[u.len() + self.plate_border()] + p[0]),
-            None => p[0],
-        };
-        Ok((self.shell.observed(u, &c, &gas)?, z0))
+        Ok((self.shell.observed(u, &c, &gas)?, self.half_distance(x, p)))
+    }
+
+    /// Half the distance of the plates.
+    pub(super) fn half_distance(&self, x: &[f64], p: &[f64]) -> f64 {
+        let plate = self.spring_border().and_then(|k| x.get(self.shell.dim() + k));
+        plate.map_or(p[0], |plate| 0.5 * (plate + p[0]))
+    }
+
+    /// Index of `z_t` among the unknowns beside the shell's, with a spring.
+    pub(super) fn spring_border(&self) -> Option<usize> {
+        self.support.spring.map(|_| self.plate_border())
     }
 
     /// [`TwoPlatesProblem::profile`].
@@ -162,7 +169,7 @@ impl<'c, T: Potential, B: Potential> SupportedProblem<'c, T, B> {
     }
 
     /// The shell's unknowns, and the numbers of either half with the plates where they are.
-    fn inner<'x>(
+    pub(crate) fn inner<'x>(
         &self,
         x: &'x [f64],
         p: &[f64],

@@ -48,7 +48,7 @@ fn losses(traced: &Traced, after: usize) -> Option<Vec<Loss>> {
         if event.modes_before > 0 || event.modes_after == 0 {
             continue;
         }
-        let class = |parity: Parity, n: usize| (n, parity) == (event.n, event.parity);
+        let class = |parity: Option<Parity>, n: usize| (n, parity) == (event.n, event.parity);
         let end = events[k..].iter().find(|e| class(e.parity, e.n) && e.modes_after == 0);
         let to = match end {
             Some(end) => Some(deformation(end.z0)?),

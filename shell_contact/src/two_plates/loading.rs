@@ -1,0 +1,198 @@
+//! The shell from pole to pole as a device moves its plates: cycles, jumps and where they begin.
+//!
+//! Both plates belong to one grip, `z0` being half their distance. An upper plate on a cantilever of
+//! stiffness `k_c` whose base is at `z = base` moves by `z_t − base = 2(z0 − base)`, so that it is to
+//! `z0` a spring of stiffness `2k_c`: [`Device::Cantilever`] with that stiffness, and the potential
+//! `(√k_b/2) k_c (z_t − base)²`.
+//!
+//! The drag of a motion is that of the metric. A multiplier has none: held, the equator stays where it
+//! is, and the motion is that of the rest.
+
+use super::{SupportedProblem, TwoPlatesProblem, parameter};
+use crate::device::{Device, Loading, MotionError, Relaxation, RelaxationSettings, Side};
+use crate::film::Potential;
+use continuation::linalg::{Arrow, SymmetricBand};
+use continuation::{EvalError, Matrix, NewtonSettings, Problem, newton};
+
+/// Energies that differ by less, relative, are those of mirror images.
+const SAME_ENERGY: f64 = 1e-9;
+
+/// A stable state of the shell between plates where the device's parameter is `value`: the one that
+/// Newton's method finds from `rest`, or that to which the shell moves from there. Where the
+/// equilibrium between two plates is unstable it is a state on one of them, on that of the lower
+/// energy if they differ.
+///
+/// # Errors
+/// When the motion does not come to an end.
+pub fn stable_start<P: Loading>(
+    problem: &P,
+    rest: &[f64],
+    value: f64,
+) -> Result<Vec<f64>, MotionError> {
+    let p = problem.parameters_at(value);
+    let mut relaxation = Relaxation::new(problem, RelaxationSettings::default());
+    let mut x = rest.to_vec();
+    if newton(problem, &mut x, &p, &NewtonSettings::default()).is_err() {
+        relaxation.from_state(problem, rest, &p)?;
+        return Ok(relaxation.state().to_vec());
+    }
+    let mut hessian = problem.new_jacobian();
+    problem.jacobian(&x, &p, &mut hessian).map_err(MotionError::Start)?;
+    let floor = f64::EPSILON * hessian.norm();
+    let inertia = hessian.factor(floor).inertia;
+    if inertia.is_some_and(|(negative, _)| negative <= problem.multipliers()) {
+        return Ok(x);
+    }
+    relaxation.from_saddle(problem, &x, &p, Side::First)?;
+    let first = relaxation.state().to_vec();
+    if relaxation.from_saddle(problem, &x, &p, Side::Second).is_err() {
+        return Ok(first);
+    }
+    let energy = |x: &[f64]| problem.potential(x, &p).map_err(MotionError::Start);
+    let (one, other) = (energy(&first)?, energy(relaxation.state())?);
+    // of two mirror images the first
+    let lower = one - other > SAME_ENERGY * one.abs().max(other.abs());
+    Ok(if lower { relaxation.state().to_vec() } else { first })
+}
+
+/// Half the sum of two slopes of forces.
+fn mean(top: Option<f64>, bottom: Option<f64>) -> f64 {
+    top.zip(bottom).map_or(f64::NAN, |(top, bottom)| 0.5 * (top + bottom))
+}
+
+fn column(name: &str) -> usize {
+    super::NAMES.iter().position(|own| *own == name).unwrap_or(usize::MAX)
+}
+
+impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
+    /// Whether both plates have the same film.
+    fn plates_are_alike(&self) -> bool {
+        let (top, bottom) = (self.groups.top, self.groups.bottom);
+        // potentials of other types may be the same functions: in attraction, at rest, in repulsion
+        let same = |at: f64| {
+            let (delta, w) = (at * top.film, top.adhesion);
+            let (a, b) = &self.potentials;
+            a.energy(delta, w, top.film) == b.energy(delta, w, top.film)
+        };
+        top == bottom && [2.0, 1.0, 0.7].into_iter().all(same)
+    }
+}
+
+impl<T: Potential, B: Potential> Loading for TwoPlatesProblem<T, B> {
+    fn device(&self) -> Device {
+        Device::Grip
+    }
+
+    fn parameters_at(&self, value: f64) -> Vec<f64> {
+        TwoPlatesProblem::parameters_at(self, value)
+    }
+
+    fn plate(&self, _: &[f64], p: &[f64]) -> f64 {
+        p[parameter::Z0.0]
+    }
+
+    fn mean_force(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+        let (c, _) = self.coefficients(x.len(), p)?;
+        self.mean_force_between(x, &c)
+    }
+
+    fn mean_force_along(
+        &self,
+        x: &[f64],
+        p: &[f64],
+        dx: &[f64],
+        dp: f64,
+    ) -> Result<f64, EvalError> {
+        let slope = |k| self.observable_slope(k, x, p, parameter::Z0, dx, dp);
+        Ok(mean(slope(column("force"))?, slope(column("force_bottom"))?))
+    }
+
+    fn energy(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+        self.total_energy(x, p)
+    }
+
+    fn add_drag(&self, a: f64, h: &mut SymmetricBand) {
+        h.axpy(a, &self.mass);
+    }
+
+    fn root(&self, p: &[f64]) -> f64 {
+        p[parameter::BENDING.0].sqrt()
+    }
+
+    fn shell_part<'x>(&self, x: &'x [f64]) -> &'x [f64] {
+        x
+    }
+
+    /// Where both plates are the same.
+    fn mirrored(&self, x: &[f64]) -> Option<Vec<f64>> {
+        let alike = self.plates_are_alike();
+        alike.then(|| self.reflected(x))
+    }
+}
+
+impl<T: Potential, B: Potential> Loading for SupportedProblem<'_, T, B> {
+    fn device(&self) -> Device {
+        match self.support().spring {
+            Some(stiffness) => Device::Cantilever { stiffness: 2.0 * stiffness },
+            None => Device::Grip,
+        }
+    }
+
+    fn parameters_at(&self, value: f64) -> Vec<f64> {
+        SupportedProblem::parameters_at(self, value)
+    }
+
+    fn plate(&self, x: &[f64], p: &[f64]) -> f64 {
+        self.half_distance(x, p)
+    }
+
+    fn mean_force(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+        let (u, c, _) = self.inner(x, p)?;
+        self.shell().mean_force_between(u, &c)
+    }
+
+    fn mean_force_along(
+        &self,
+        x: &[f64],
+        p: &[f64],
+        dx: &[f64],
+        dp: f64,
+    ) -> Result<f64, EvalError> {
+        let slope = |k| self.observable_slope(k, x, p, parameter::Z0, dx, dp);
+        Ok(mean(slope(column("force"))?, slope(column("force_bottom"))?))
+    }
+
+    fn energy(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+        let (u, c, gas) = self.inner(x, p)?;
+        self.shell().energy_between(u, &c, &gas)
+    }
+
+    fn add_drag(&self, a: f64, h: &mut Arrow<SymmetricBand>) {
+        h.core_mut().axpy(a, &self.shell().mass);
+        if let Some(k) = self.spring_border() {
+            let corner = h.corner(k, k);
+            h.set_corner(k, k, corner + a);
+        }
+    }
+
+    fn root(&self, p: &[f64]) -> f64 {
+        p[parameter::BENDING.0].sqrt()
+    }
+
+    fn shell_part<'x>(&self, x: &'x [f64]) -> &'x [f64] {
+        x
+    }
+
+    fn force(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
+        Ok(self.observation(x, p)?.0.whole.force)
+    }
+
+    /// Between two equal plates that are rigid.
+    fn mirrored(&self, x: &[f64]) -> Option<Vec<f64>> {
+        let alike = self.support().spring.is_none() && self.shell().plates_are_alike();
+        let (u, more) = x.split_at(self.shell().dim());
+        // the multiplier is a difference of forces
+        alike
+            .then(|| self.shell().reflected(u).into_iter().chain(more.iter().map(|m| -m)).collect())
+    }
+}
