@@ -31,6 +31,7 @@ impl<'a> Resolver<'a> {
             "path",
             "diagram",
             "map",
+            "stability",
         ];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();

@@ -43,7 +43,7 @@ impl ResolvedCase {
         path(&mut out, &self.path);
         diagram(&mut out, &self.diagram);
         map(&mut out, self.map);
-        if matches!(self.problem, ProblemCase::Contact(_)) {
+        if matches!(self.problem, ProblemCase::Contact(_) | ProblemCase::TwoPlates(_)) {
             stability(&mut out, self.stability);
         }
         out.0

@@ -28,6 +28,8 @@ pub(crate) struct CycleResult {
     pub(crate) points: Vec<PathRow>,
     /// The complete branch.
     pub(crate) branch: Table,
+    /// Whether the path follows axisymmetric modes of both parities, not mirror images only.
+    pub(crate) both_parities: bool,
     /// The jumps, in order.
     pub(crate) jumps: Vec<JumpRecord>,
     /// Plate distance and force of the most attractive force on the way out.
@@ -61,6 +63,9 @@ pub(crate) struct CycleResult {
     /// What a report shows, if one was asked for.
     pub(crate) reported: ReportedCycle,
 }
+
+/// Parities of axisymmetric modes.
+const PARITIES: [&str; 2] = ["symmetric", "antisymmetric"];
 
 /// What a report of a cycle shows besides the complete branch.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -101,6 +106,47 @@ pub(crate) struct PathRow {
     pub(crate) parameter: f64,
     /// Kind of special point; `jump` for the state after one.
     pub(crate) event: String,
+    /// What else it is unstable to, if that was counted.
+    pub(crate) modes: Option<PathModes>,
+}
+
+/// Unstable modes of a state on the path beside those at whose loss the path jumps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PathModes {
+    /// Axisymmetric modes that break the mirror symmetry; `None` where the path follows those too.
+    pub(crate) antisymmetric: Option<usize>,
+    /// Modes with waves around the axis, pairs counted once.
+    pub(crate) modes: usize,
+    /// The fewest waves of them.
+    pub(crate) first_n: Option<usize>,
+    /// The most waves examined.
+    pub(crate) n_max: usize,
+    /// Whether the counts are certain.
+    pub(crate) certain: bool,
+}
+
+impl PathModes {
+    fn is_unstable(&self) -> bool {
+        self.modes > 0 || self.antisymmetric.is_some_and(|n| n > 0)
+    }
+
+    /// Whether the state is stable to everything that was counted.
+    fn word(&self) -> &'static str {
+        match (self.is_unstable(), self.certain) {
+            (true, _) => "no",
+            (false, true) => "yes",
+            (false, false) => "unknown",
+        }
+    }
+
+    /// The mode in words.
+    fn kind(&self) -> String {
+        match (self.antisymmetric, self.first_n) {
+            (Some(n), _) if n > 0 => "without mirror symmetry".to_owned(),
+            (_, Some(n)) => format!("n = {n}"),
+            _ => String::new(),
+        }
+    }
 }
 
 /// A jump; `None` is a plate that is far away.
@@ -159,6 +205,59 @@ pub(crate) struct StretchRecord {
 }
 
 impl CycleResult {
+    /// Whether every state's modes were counted for certain; `None` where none were.
+    fn certain(&self) -> Option<bool> {
+        let counted = self.points.iter().any(|row| row.modes.is_some());
+        let certain = |row: &PathRow| row.modes.is_some_and(|modes| modes.certain);
+        counted.then(|| self.points.iter().all(certain))
+    }
+
+    /// States of the path that are unstable to modes that it does not follow.
+    fn unstable_states(&self) -> impl Iterator<Item = (&PathRow, PathModes)> {
+        let rows = self.points.iter().filter_map(|row| Some((row, row.modes?)));
+        rows.filter(|(_, modes)| modes.is_unstable())
+    }
+
+    /// To which modes the path is stable.
+    fn stability(&self) -> serde_json::Value {
+        let parities = if self.both_parities { &PARITIES[..] } else { &PARITIES[..1] };
+        let certain = self.certain();
+        let n_max = self.points.iter().filter_map(|row| Some(row.modes?.n_max)).max();
+        let unstable = certain.map(|_| self.unstable_states().count());
+        json!({
+            "followed": { "n": 0, "parities": parities },
+            "scan": if certain.is_some() { "full" } else { "axisymmetric" },
+            "max_n": n_max,
+            "certain": certain,
+            "unstable_states": unstable,
+        })
+    }
+
+    /// The same in sentences.
+    fn stability_text(&self) -> String {
+        let parities = if self.both_parities { "with and without" } else { "with" };
+        let mut text = format!("jumps where axisymmetric modes {parities} mirror symmetry turn; ");
+        let mut unstable = self.unstable_states();
+        text += &match (self.certain(), unstable.next()) {
+            (None, _) => "other modes were not counted".to_owned(),
+            (Some(_), Some((row, modes))) => {
+                let number = count(1 + unstable.count(), "state", "states");
+                let (way, kind) = (row.direction, modes.kind());
+                let (name, at) = (self.parameter, rounded(row.parameter));
+                format!(
+                    "{number} of the path unstable to others, first on {way} at {name} = {at} ({kind})"
+                )
+            }
+            (Some(true), None) => {
+                "no other mode is unstable on the path, torsion left out".to_owned()
+            }
+            (Some(false), None) => {
+                "whether others are stable is not certain at every state".to_owned()
+            }
+        };
+        text + "\n"
+    }
+
     /// Difference of loop area and dissipated energy, relative to the larger; without jumps, the loop
     /// area relative to the work on one way.
     fn imbalance(&self) -> Option<f64> {
@@ -196,6 +295,7 @@ pub(crate) fn cycle_json(result: &CycleResult) -> Result<String, serde_json::Err
         folds: &result.folds,
         unstable: &result.unstable,
         maxwell: maxwell_of(&result.maxwell),
+        stability: result.stability(),
         stopped_because: result.stopped_because.to_string(),
         stopped_detail: &result.stopped_detail,
         points: result.points.len(),
@@ -228,6 +328,7 @@ struct Document<'a> {
     folds: &'a [FoldRecord],
     unstable: &'a [StretchRecord],
     maxwell: Vec<super::events::MaxwellOf<'a>>,
+    stability: serde_json::Value,
     stopped_because: String,
     stopped_detail: &'a str,
     points: usize,
@@ -236,6 +337,9 @@ struct Document<'a> {
     seconds: f64,
 }
 
+/// Columns of what a state is unstable to.
+const MODES: [&str; 4] = ["unstable_antisymmetric", "unstable_modes", "first_n", "stable"];
+
 /// The path as a table.
 pub(crate) fn cycle_table(result: &CycleResult) -> Table {
     let mut columns = vec!["direction", "step", "z0", "force", "energy_total"];
@@ -243,6 +347,10 @@ pub(crate) fn cycle_table(result: &CycleResult) -> Table {
         columns.push(result.parameter);
     }
     columns.push("event");
+    let counted = result.points.iter().any(|row| row.modes.is_some());
+    if counted {
+        columns.extend(MODES);
+    }
     let mut table = Table::with_columns(&columns);
     for row in &result.points {
         let mut cells: Vec<Cell> = vec![
@@ -256,6 +364,12 @@ pub(crate) fn cycle_table(result: &CycleResult) -> Table {
             cells.push(row.parameter.into());
         }
         cells.push(row.event.as_str().into());
+        if let (true, Some(modes)) = (counted, row.modes) {
+            let antisymmetric = modes.antisymmetric.map_or(Cell::Empty, Into::into);
+            let (number, first) = (modes.modes.into(), modes.first_n.into());
+            cells.extend([antisymmetric, number, first, modes.word().into()]);
+        }
+        cells.resize(columns.len(), Cell::Empty);
         table.push(cells);
     }
     table
@@ -313,6 +427,7 @@ pub(crate) fn cycle_summary(result: &CycleResult, folder: Option<&Path>) -> Stri
         let _ =
             writeln!(out, "equal energies (Maxwell point) at {name} = {at}: {other} {a} and {b}");
     }
+    out.push_str(&result.stability_text());
     let _ = write!(out, "{}: stopped at {}", result.case, result.stopped_because);
     if !result.stopped_detail.is_empty() {
         let _ = write!(out, " ({})", result.stopped_detail);

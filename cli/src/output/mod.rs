@@ -19,7 +19,7 @@ mod temporary;
 pub(crate) mod tests;
 
 pub(crate) use checkpoint::Checkpoint;
-pub(crate) use cycle::{CycleResult, FoldRecord, JumpRecord, PathRow, ReportedCycle};
+pub(crate) use cycle::{CycleResult, FoldRecord, JumpRecord, PathModes, PathRow, ReportedCycle};
 pub(crate) use cycle::{StretchRecord, Way, cycle_json, cycle_summary, cycle_table};
 pub(crate) use diagram::{BranchRecord, DiagramResult, From, NearRecord, Symmetry};
 pub(crate) use diagram::{diagram_json, diagram_summary};

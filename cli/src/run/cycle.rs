@@ -1,16 +1,27 @@
 //! A cycle: the complete branch, the path once to and fro, and what it dissipates.
 
-use super::contact::{SAMPLES, device, follow, loaded_path, not_held, path, result, row, shell};
-use super::{Observer, RunError, listen, ways};
-use crate::case::{ProblemCase, ResolvedCase};
-use crate::output::{CycleResult, FoldRecord, JumpRecord, PathRow, ReportedCycle, StretchRecord};
-use crate::pictures::{Curve, CyclePictures, Mark, Shape, Stability};
-use continuation::{EventKind, Problem, Settings};
-use shell_contact::device::{
-    Cycle, CyclePoint, CycleSettings, Direction, Loading, RelaxationSettings, balance, free_start,
-    travel,
+use super::contact::{
+    SAMPLES, device, follow, loaded_path, no_start, not_held, path, result, row, shell,
 };
-use shell_contact::{ContactBranch, ContactProblem, Device, LoadedProblem};
+use super::stability::Stability as Scanned;
+use super::two_plates::{self, BetweenPlates, WithPlates};
+use super::{Observer, RunError, listen, ways};
+use crate::case::{
+    ContactCase, DeviceCase, ProblemCase, ResolvedCase, StabilityCase, TwoPlatesCase,
+};
+use crate::output::{
+    CycleResult, FoldRecord, JumpRecord, MaxwellRecord, PathModes, PathRow, ReportedCycle,
+    StretchRecord, Table,
+};
+use crate::pictures::{Curve, CyclePictures, Mark, Shape};
+use continuation::{EventKind, Problem, Settings, Tracer};
+use shell_contact::device::{
+    Balance, Cycle, CyclePoint, CycleSettings, Direction, Loading, RelaxationSettings, balance,
+    free_start, travel,
+};
+use shell_contact::modes::{AsymmetricModes, WholeModes};
+use shell_contact::two_plates::stable_start;
+use shell_contact::{ContactBranch, Device, LoadedProblem, force_watches};
 use std::time::Instant;
 
 /// Travel a case to and fro; `reported` also takes the states on the way, for a report.
@@ -23,18 +34,28 @@ pub(crate) fn run_cycle(
     observer: &mut Observer<'_>,
 ) -> Result<CycleResult, RunError> {
     let name = case.name.clone();
-    let contact = match &case.problem {
-        ProblemCase::Contact(contact) => contact,
-        ProblemCase::TwoPlates(_) => {
-            return Err(RunError::MirrorOnly { case: name, command: "arclen cycle" });
+    match &case.problem {
+        ProblemCase::Contact(contact) => half(case, contact, reported, observer),
+        ProblemCase::TwoPlates(plates) => {
+            let travel = Travel { case, plates, reported, observer };
+            two_plates::visit(case, plates, travel)?
         }
         ProblemCase::RingLoad(_) => {
-            return Err(RunError::NoPlates { case: name, problem: "ring-load".to_owned() });
+            Err(RunError::NoPlates { case: name, problem: "ring-load".to_owned() })
         }
         ProblemCase::Catalogue(problem) => {
-            return Err(RunError::NoPlates { case: name, problem: problem.name.clone() });
+            Err(RunError::NoPlates { case: name, problem: problem.name.clone() })
         }
-    };
+    }
+}
+
+/// A cycle of mirror images.
+fn half(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    reported: bool,
+    observer: &mut Observer<'_>,
+) -> Result<CycleResult, RunError> {
     let clock = Instant::now();
     let problem = shell(case, contact)?;
     let device = device(contact);
@@ -50,45 +71,174 @@ pub(crate) fn run_cycle(
         let loaded = LoadedProblem::new(&problem, device).map_err(|e| not_held(case, e.into()))?;
         go(case, &loaded, &first.u, loaded_path(case), observer)
     }?;
-    // a path whose states are all admissible has its work
-    let balance = balance(&problem, &cycle).ok();
-    let seconds = clock.elapsed().as_secs_f64();
-    let branch = &traced.branch;
-    let path_rows: Vec<PathRow> = cycle.points.iter().enumerate().map(path_row).collect();
-    let pull_off = cycle.pull_off().map(|point| (point.z0, point.force));
-    let (mut stopped, mut detail) = (cycle.stopped.reason, cycle.stopped.detail.clone());
-    if stopped.is_complete() && !branch.stopped.reason.is_complete() {
-        stopped = branch.stopped.reason;
-        detail = format!("the complete branch is not: {}", branch.stopped.detail);
-    }
-    Ok(CycleResult {
-        case: name,
+    let mut modes = AsymmetricModes::new(problem.mesh());
+    let mut counted = |point: &CyclePoint| {
+        let StabilityCase::Full { max_n } = case.stability else { return None };
+        let u = point.u.get(..problem.dim())?;
+        modes.assemble(&problem, u, &problem.parameters_at(point.z0)).ok()?;
+        let scan = modes.scan(max_n);
+        Some(PathModes {
+            antisymmetric: Some(scan.antisymmetric),
+            modes: scan.modes,
+            first_n: scan.first_n,
+            n_max: scan.n_max,
+            certain: scan.certain,
+        })
+    };
+    let shape = |point: &CyclePoint| {
+        let parameters = problem.parameters_at(point.z0);
+        let profile = problem.profile(&point.u[..problem.dim()], &parameters, SAMPLES).ok()?;
+        Some(Shape { sigma: profile.sigma, z: profile.z, plate: point.z0, ..Shape::default() })
+    };
+    let travelled = Travelled {
+        case,
         device: contact.device,
         parameter: device.parameter_name(),
-        path: (case.path.start, case.path.end),
-        jumps: cycle.jumps.iter().map(|jump| jump_record(&cycle, jump)).collect(),
-        pull_off,
-        dissipated: cycle.dissipated(),
-        loop_area: balance.and_then(|b| b.loop_area),
-        area_error: balance.map(|b| b.error_estimate),
-        work: balance.map(|b| (b.approach, b.retract)),
-        closed: cycle.closed,
-        folds: folds(&traced),
-        unstable: unstable(&traced),
-        maxwell,
-        stopped_because: stopped,
-        stopped_detail: detail,
-        newton_iterations: cycle.newton_iterations + branch.statistics.newton_iterations,
-        seconds,
-        pictures: pictures(&case.name, &problem, &traced, &cycle),
+        both_parities: false,
+        // a path whose states are all admissible has its work
+        balance: balance(&problem, &cycle).ok(),
         reported: if reported {
             ways::reported(&problem, &traced, &cycle)
         } else {
             ReportedCycle::default()
         },
         branch: result(case, &traced, 0.0).table,
-        points: path_rows,
-    })
+        traced: &traced,
+        cycle: &cycle,
+        maxwell,
+    };
+    Ok(travelled.result(clock, &mut counted, &shape))
+}
+
+/// A cycle from pole to pole.
+struct Travel<'t, 'o> {
+    case: &'t ResolvedCase,
+    plates: &'t TwoPlatesCase,
+    reported: bool,
+    observer: &'t mut Observer<'o>,
+}
+
+impl WithPlates for Travel<'_, '_> {
+    type Output = Result<CycleResult, RunError>;
+
+    fn with<P: BetweenPlates>(self, problem: &P, x: &[f64], p: &[f64]) -> Self::Output {
+        let Travel { case, plates, reported, observer } = self;
+        let clock = Instant::now();
+        let name = problem.parameters()[0].name;
+        let settings = two_plates::settings(case, name);
+        let traced = Tracer::new(problem, name, x, p, settings.clone())
+            .and_then(|tracer| tracer.watching(&force_watches()))
+            .map(|tracer| ContactBranch::new(tracer.run(&mut listen(observer)), None))
+            .map_err(|detail| no_start(case, detail))?;
+        let start = stable_start(problem, x, case.path.start)
+            .map_err(|detail| not_held(case, detail.into()))?;
+        let cycle = go(case, problem, &start, settings, observer)?;
+        let mut modes = WholeModes::new(problem.half_mesh());
+        let mut counted = |point: &CyclePoint| {
+            let StabilityCase::Full { max_n } = case.stability else { return None };
+            let p = problem.parameters_at(point.parameter);
+            problem.assemble_modes(&point.u, &p, &mut modes).ok()?;
+            let scan = modes.scan(max_n);
+            Some(PathModes {
+                antisymmetric: None,
+                modes: scan.modes,
+                first_n: scan.first_n,
+                n_max: scan.n_max,
+                certain: scan.certain,
+            })
+        };
+        let shape = |point: &CyclePoint| {
+            let p = problem.parameters_at(point.parameter);
+            let profile = problem.meridian(&point.u, &p).ok()?;
+            let [above, below] = problem.heights(&point.u, &p).ok()?;
+            Some(Shape {
+                sigma: profile.sigma,
+                z: profile.z,
+                plate: above,
+                plate_below: Some(below),
+                ..Shape::default()
+            })
+        };
+        let stiffness = plates.plates[0].and_then(|plate| plate.stiffness);
+        let travelled = Travelled {
+            case,
+            device: stiffness.map_or(DeviceCase::Grip, |k| DeviceCase::Cantilever { stiffness: k }),
+            parameter: problem.device().parameter_name(),
+            both_parities: true,
+            balance: balance(problem, &cycle).ok(),
+            reported: if reported {
+                ways::between_plates(&traced, &cycle, &|point| {
+                    problem.whole(&point.u, &problem.parameters_at(point.parameter)).ok()
+                })
+            } else {
+                ReportedCycle::default()
+            },
+            branch: two_plates::result(case, &traced, &Scanned::default(), 0.0).table,
+            traced: &traced,
+            cycle: &cycle,
+            maxwell: Vec::new(),
+        };
+        Ok(travelled.result(clock, &mut counted, &shape))
+    }
+}
+
+/// A cycle with what was found beside it.
+struct Travelled<'t> {
+    case: &'t ResolvedCase,
+    device: DeviceCase,
+    parameter: &'static str,
+    both_parities: bool,
+    balance: Option<Balance>,
+    reported: ReportedCycle,
+    branch: Table,
+    traced: &'t ContactBranch,
+    cycle: &'t Cycle,
+    maxwell: Vec<MaxwellRecord>,
+}
+
+impl Travelled<'_> {
+    fn result(
+        self,
+        clock: Instant,
+        counted: &mut dyn FnMut(&CyclePoint) -> Option<PathModes>,
+        shape: &dyn Fn(&CyclePoint) -> Option<Shape>,
+    ) -> CycleResult {
+        let Travelled { case, traced, cycle, balance, .. } = self;
+        let branch = &traced.branch;
+        let row = |(step, point): (usize, &CyclePoint)| path_row(step, point, counted(point));
+        let points: Vec<PathRow> = cycle.points.iter().enumerate().map(row).collect();
+        let pull_off = cycle.pull_off().map(|point| (point.z0, point.force));
+        let (mut stopped, mut detail) = (cycle.stopped.reason, cycle.stopped.detail.clone());
+        if stopped.is_complete() && !branch.stopped.reason.is_complete() {
+            stopped = branch.stopped.reason;
+            detail = format!("the complete branch is not: {}", branch.stopped.detail);
+        }
+        CycleResult {
+            case: case.name.clone(),
+            device: self.device,
+            parameter: self.parameter,
+            path: (case.path.start, case.path.end),
+            both_parities: self.both_parities,
+            jumps: cycle.jumps.iter().map(|jump| jump_record(cycle, jump)).collect(),
+            pull_off,
+            dissipated: cycle.dissipated(),
+            loop_area: balance.and_then(|b| b.loop_area),
+            area_error: balance.map(|b| b.error_estimate),
+            work: balance.map(|b| (b.approach, b.retract)),
+            closed: cycle.closed,
+            folds: folds(traced),
+            unstable: unstable(traced),
+            maxwell: self.maxwell,
+            stopped_because: stopped,
+            stopped_detail: detail,
+            newton_iterations: cycle.newton_iterations + branch.statistics.newton_iterations,
+            seconds: clock.elapsed().as_secs_f64(),
+            pictures: pictures(&case.name, traced, cycle, shape),
+            reported: self.reported,
+            branch: self.branch,
+            points,
+        }
+    }
 }
 
 fn go<P: Loading>(
@@ -115,7 +265,7 @@ pub(super) fn word(direction: Direction) -> &'static str {
     }
 }
 
-fn path_row((step, point): (usize, &CyclePoint)) -> PathRow {
+fn path_row(step: usize, point: &CyclePoint, modes: Option<PathModes>) -> PathRow {
     PathRow {
         direction: word(point.direction),
         step,
@@ -124,6 +274,7 @@ fn path_row((step, point): (usize, &CyclePoint)) -> PathRow {
         energy_total: point.energy,
         parameter: point.parameter,
         event: point.event.clone().unwrap_or_default(),
+        modes,
     }
 }
 
@@ -198,9 +349,9 @@ fn unstable(traced: &ContactBranch) -> Vec<StretchRecord> {
 
 fn pictures(
     title: &str,
-    problem: &ContactProblem,
     traced: &ContactBranch,
     cycle: &Cycle,
+    shape: &dyn Fn(&CyclePoint) -> Option<Shape>,
 ) -> CyclePictures {
     let branch = &traced.branch;
     let mut complete = Curve { label: "complete branch".to_owned(), ..Curve::default() };
@@ -244,16 +395,8 @@ fn pictures(
         }
         let of = |point: Option<&CyclePoint>, when: &str| {
             let point = point?;
-            let parameters = problem.parameters_at(point.z0);
-            let profile = problem.profile(&point.u[..problem.dim()], &parameters, SAMPLES).ok()?;
-            Some(Shape {
-                label: format!("{when}: z₀/R₀ = {:.3}", point.z0),
-                sigma: profile.sigma,
-                z: profile.z,
-                plate: point.z0,
-                plate_below: None,
-                stability: Stability::Stable,
-            })
+            let label = format!("{when}: z₀/R₀ = {:.3}", point.z0);
+            Some(Shape { label, ..shape(point)? })
         };
         let pair = [of(before, "before"), of(after, "after")];
         let label = format!("{title}, jump {}: {}", number + 1, word(jump.direction));

@@ -12,7 +12,7 @@ use shell_contact::modes::WholeShell;
 use shell_contact::two_plates::{
     Plate, Support, SupportedProblem, TwoPlatesGroups, TwoPlatesProblem,
 };
-use shell_contact::{ContactBranch, Mesh, Shell, force_watches};
+use shell_contact::{ContactBranch, Mesh, Observation, Shell, force_watches};
 use std::time::Instant;
 
 /// The columns that follow the fixed ones.
@@ -23,6 +23,8 @@ const OWN: [&str; 5] =
 pub(super) trait BetweenPlates: WholeShell {
     /// The meridian from the upper pole to the lower.
     fn meridian(&self, x: &[f64], p: &[f64]) -> Result<shell_contact::Profile, EvalError>;
+    /// What is reported of a state of any shell.
+    fn whole(&self, x: &[f64], p: &[f64]) -> Result<Observation, EvalError>;
     /// Heights of both plates.
     fn heights(&self, x: &[f64], p: &[f64]) -> Result<[f64; 2], EvalError>;
 }
@@ -30,6 +32,10 @@ pub(super) trait BetweenPlates: WholeShell {
 impl BetweenPlates for TwoPlatesProblem {
     fn meridian(&self, x: &[f64], p: &[f64]) -> Result<shell_contact::Profile, EvalError> {
         self.profile(x, p, SAMPLES)
+    }
+
+    fn whole(&self, x: &[f64], p: &[f64]) -> Result<Observation, EvalError> {
+        Ok(self.observation(x, p)?.whole)
     }
 
     fn heights(&self, _: &[f64], p: &[f64]) -> Result<[f64; 2], EvalError> {
@@ -40,6 +46,10 @@ impl BetweenPlates for TwoPlatesProblem {
 impl BetweenPlates for SupportedProblem<'_> {
     fn meridian(&self, x: &[f64], p: &[f64]) -> Result<shell_contact::Profile, EvalError> {
         self.profile(x, p, SAMPLES)
+    }
+
+    fn whole(&self, x: &[f64], p: &[f64]) -> Result<Observation, EvalError> {
+        Ok(self.observation(x, p)?.0.whole)
     }
 
     fn heights(&self, x: &[f64], p: &[f64]) -> Result<[f64; 2], EvalError> {

@@ -5,7 +5,7 @@ use super::states;
 use crate::output::{ContactRow, ReportedCycle, Table, Way};
 use continuation::Problem;
 use shell_contact::device::{Cycle, CyclePoint};
-use shell_contact::{ContactBranch, ContactProblem, Device};
+use shell_contact::{ContactBranch, ContactProblem, Device, Observation};
 use std::iter;
 use std::ops::Range;
 
@@ -16,8 +16,24 @@ pub(super) fn reported(
     cycle: &Cycle,
 ) -> ReportedCycle {
     let all = traced.branch.points.len() + cycle.points.len();
+    let seen = |point: &CyclePoint| {
+        let u = point.u.get(..problem.dim())?;
+        problem.observation(u, &problem.parameters_at(point.z0)).ok()
+    };
     ReportedCycle {
-        ways: spans(cycle).into_iter().map(|span| way(problem, traced, cycle, span, all)).collect(),
+        ways: spans(cycle)
+            .into_iter()
+            .map(|span| {
+                let points = &cycle.points[span.clone()];
+                let way = way(traced, cycle, span, &seen);
+                let special =
+                    |at: usize| points[at].event.is_some() || way.jumps.contains(&(at + 1));
+                let shown = states::shown(points.len(), all, special);
+                let state =
+                    |at: usize| states::between_plates(problem, at, &points[at].u, points[at].z0);
+                Way { states: shown.filter_map(state).collect(), ..way }
+            })
+            .collect(),
         branch: states::of_contact(problem, &traced.branch, all),
     }
 }
@@ -33,19 +49,28 @@ fn spans(cycle: &Cycle) -> Vec<Range<usize>> {
     [0..turn, begin..points.len()].to_vec()
 }
 
+/// Both ways of a cycle from pole to pole, without states.
+pub(super) fn between_plates(
+    traced: &ContactBranch,
+    cycle: &Cycle,
+    seen: &dyn Fn(&CyclePoint) -> Option<Observation>,
+) -> ReportedCycle {
+    let way = |span| way(traced, cycle, span, seen);
+    ReportedCycle { ways: spans(cycle).into_iter().map(way).collect(), branch: Vec::new() }
+}
+
 fn way(
-    problem: &ContactProblem,
     traced: &ContactBranch,
     cycle: &Cycle,
     span: Range<usize>,
-    all: usize,
+    seen: &dyn Fn(&CyclePoint) -> Option<Observation>,
 ) -> Way {
     let points = &cycle.points[span.clone()];
     let cantilever = matches!(cycle.device, Device::Cantilever { .. });
     let base = cantilever.then(|| cycle.device.parameter_name().to_owned());
     let mut table = Table::contact().and(base.into_iter().collect());
     for (at, point) in points.iter().enumerate() {
-        let mut cells = row(problem, traced, at, point).cells();
+        let mut cells = row(traced, at, point, seen(point)).cells();
         cells.extend(cantilever.then(|| point.parameter.into()));
         table.push(cells);
     }
@@ -54,20 +79,16 @@ fn way(
     let jumps: Vec<usize> = landed
         .filter_map(|jump| jump.after.filter(|after| span.contains(after)).and_then(within))
         .collect();
-    let special = |at: usize| points[at].event.is_some() || jumps.contains(&(at + 1));
-    let shown = states::shown(points.len(), all, special);
-    let state = |at: usize| states::between_plates(problem, at, &points[at].u, points[at].z0);
-    let states = shown.filter_map(state).collect();
     let label = points.last().map_or("", |point| word(point.direction));
-    Way { label, table, jumps, states }
+    Way { label, table, jumps, states: Vec::new() }
 }
 
 /// One state of the path, which is stable, in the columns of a branch.
 fn row(
-    problem: &ContactProblem,
     traced: &ContactBranch,
     at: usize,
     point: &CyclePoint,
+    seen: Option<Observation>,
 ) -> ContactRow {
     let known = ContactRow {
         point: at,
@@ -79,9 +100,7 @@ fn row(
         event: point.event.clone().unwrap_or_default(),
         ..ContactRow::default()
     };
-    let u = point.u.get(..problem.dim());
-    let seen = u.and_then(|u| problem.observation(u, &problem.parameters_at(point.z0)).ok());
-    let value = |of: fn(&shell_contact::Observation) -> f64| seen.as_ref().map_or(f64::NAN, of);
+    let value = |of: fn(&Observation) -> f64| seen.as_ref().map_or(f64::NAN, of);
     ContactRow {
         pole_height: value(|seen| seen.pole_height),
         gas_pressure: value(|seen| seen.gas_pressure),

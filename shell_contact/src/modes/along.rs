@@ -151,10 +151,25 @@ pub fn scan_whole_branch<P: WholeShell>(
         }
     }
     scanned.sort();
+    scanned.forget_parities();
     Ok(scanned)
 }
 
 impl Scanned {
+    /// Where two modes of as many waves turn within the error of their places, the mode found may be
+    /// either's.
+    fn forget_parities(&mut self) {
+        for k in 1..self.events.len() {
+            let (before, after) = self.events.split_at_mut(k);
+            let b = &mut after[0];
+            for a in before.iter_mut().filter(|a| a.n == b.n) {
+                if (a.z0 - b.z0).abs() <= a.error_estimate + b.error_estimate {
+                    (a.parity, b.parity) = (None, None);
+                }
+            }
+        }
+    }
+
     /// Events in order along the branch.
     fn sort(&mut self) {
         self.events.sort_by(|a, b| {
