@@ -31,6 +31,8 @@ const ENTRIES: f64 = 2.0 * f64::EPSILON;
 
 /// Corrections longer than this, in natural amplitudes, lead astray.
 const LONGEST: f64 = 10.0;
+/// Least part of a correction that is taken where the whole has no value.
+const LEAST_PART: f64 = 0.03;
 /// Points nearer to each other than this, in natural amplitudes, are one with a larger kernel.
 const COINCIDENT: f64 = 1e-8;
 
@@ -273,7 +275,15 @@ pub(crate) fn find<P: Problem>(
             return finish(probe, frame, z, amplitude, tangent, correction, &beta);
         }
         last = correction;
-        probe.assemble(&z)?;
+        // a state without a value is met by a shorter correction
+        let mut part = 1.0;
+        while let Err(error) = probe.assemble(&z) {
+            part *= 0.5;
+            if part < LEAST_PART {
+                return Err(error.into());
+            }
+            z.add(-part, &step);
+        }
         frame.factor(probe);
         frame.renew(probe).ok_or(Failure::NoConvergence)?;
     }

@@ -223,17 +223,25 @@ impl<'a, P: Problem> Probe<'a, P> {
         self.stencil(z, v, &terms, xs)
     }
 
-    /// Largest component of `([F_u F_p](z + x v) − [F_u F_p](z)) v`.
+    /// `−[F_u F_p](z) v`.
+    fn without(&mut self, z: &Extended, v: &Extended) -> Result<Vec<f64>, EvalError> {
+        let mut out = [vec![0.0; self.dim()]];
+        self.accumulate(z, v, 0.0, -1.0, &[v], &mut out)?;
+        let [out] = out;
+        Ok(out)
+    }
+
+    /// Largest component of `([F_u F_p](z + x v) − [F_u F_p](z)) v`, given `base = −[F_u F_p](z) v`.
     fn change(
         &mut self,
         z: &Extended,
         v: &Extended,
         x: f64,
+        base: &[f64],
         out: &mut [Vec<f64>],
     ) -> Result<f64, EvalError> {
-        out[0].fill(0.0);
+        out[0].copy_from_slice(base);
         self.accumulate(z, v, x, 1.0, &[v], out)?;
-        self.accumulate(z, v, 0.0, -1.0, &[v], out)?;
         Ok(super::max_abs(&out[0]))
     }
 
@@ -241,9 +249,10 @@ impl<'a, P: Problem> Probe<'a, P> {
     /// that do not depend on the unit of the unknowns.
     pub(crate) fn natural(&mut self, z: &Extended, v: &Extended, reference: f64) -> Option<f64> {
         let mut x = self.amplitude(z, v, reference)?;
+        let base = self.without(z, v).ok()?;
         let mut out = vec![vec![0.0; self.dim()]];
         for _ in 0..3 {
-            match self.change(z, v, x, &mut out) {
+            match self.change(z, v, x, &base, &mut out) {
                 Ok(change) if change > 0.0 => x *= (reference / change).clamp(0.01, 20.0),
                 _ => break,
             }
@@ -257,10 +266,11 @@ impl<'a, P: Problem> Probe<'a, P> {
     /// `v` as far as can be seen.
     pub(crate) fn amplitude(&mut self, z: &Extended, v: &Extended, reference: f64) -> Option<f64> {
         let mut x = 1.0;
+        let base = self.without(z, v).ok()?;
         let mut out = vec![vec![0.0; self.dim()]];
         let (mut too_small, mut too_large) = (0.0_f64, f64::INFINITY);
         for _ in 0..40 {
-            let change = self.change(z, v, x, &mut out).map(|change| change / reference);
+            let change = self.change(z, v, x, &base, &mut out).map(|change| change / reference);
             match change {
                 Ok(m) if (0.05..=5.0).contains(&m) => return Some(x),
                 Ok(m) if m < 0.05 => {
