@@ -236,24 +236,23 @@ impl CycleResult {
     /// The same in sentences.
     fn stability_text(&self) -> String {
         let parities = if self.both_parities { "with and without" } else { "with" };
-        let mut text = format!("jumps where axisymmetric modes {parities} mirror symmetry turn; ");
+        let mut text = format!(
+            "stability: of the path against axisymmetric modes {parities} mirror symmetry; "
+        );
         let mut unstable = self.unstable_states();
         text += &match (self.certain(), unstable.next()) {
             (None, _) => "other modes were not counted".to_owned(),
             (Some(_), Some((row, modes))) => {
-                let number = count(1 + unstable.count(), "state", "states");
                 let (way, kind) = (row.direction, modes.kind());
+                let number = match unstable.count() {
+                    0 => "one state is".to_owned(),
+                    more => format!("{} states are", more + 1),
+                };
                 let (name, at) = (self.parameter, rounded(row.parameter));
-                format!(
-                    "{number} of the path unstable to others, first on {way} at {name} = {at} ({kind})"
-                )
+                format!("{number} unstable to others, first on {way} at {name} = {at} ({kind})")
             }
-            (Some(true), None) => {
-                "no other mode is unstable on the path, torsion left out".to_owned()
-            }
-            (Some(false), None) => {
-                "whether others are stable is not certain at every state".to_owned()
-            }
+            (Some(true), None) => "no other one is unstable, torsion left out".to_owned(),
+            (Some(false), None) => "of others it is not certain at every state".to_owned(),
         };
         text + "\n"
     }

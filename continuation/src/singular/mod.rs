@@ -91,7 +91,13 @@ pub(crate) fn locate_branch_points<P: Problem>(
         let z = Extended { u: x.u.clone(), p: x.p };
         match attempt(core, &mut probe, segment, &z, k, &mut x) {
             Ok(crossed) => found = Some(vec![crossed]),
-            Err(Failure::Evaluation(error)) => refusal = Refusal::Evaluation(error),
+            // from elsewhere it may leave the domain too: where the point lies is to be known first
+            Err(Failure::Evaluation(error)) => {
+                refusal = Refusal::Evaluation(error);
+                if k == 1 {
+                    break;
+                }
+            }
             Err(Failure::Close(gap)) => {
                 refusal = Refusal::BranchesClose { gap };
                 break;
@@ -108,6 +114,27 @@ pub(crate) fn locate_branch_points<P: Problem>(
     }
     core.statistics.newton_iterations += probe.assemblies;
     found.ok_or(refusal)
+}
+
+/// The same of a simple one that is known to be near `state`, a state of the branch between `a` and `b`.
+pub(crate) fn locate_branch_point_near<P: Problem>(
+    core: &mut Core<'_, P>,
+    (a, b): (&State, &State),
+    h: f64,
+    state: &State,
+    final_say: bool,
+) -> Result<Crossed, Refusal> {
+    let mut probe = core.probe();
+    let segment = Segment { a, b, h, bend: bend(core, a, b), final_say };
+    let z = Extended { u: state.u.clone(), p: state.p };
+    let mut x = a.clone();
+    let found = attempt(core, &mut probe, segment, &z, 1, &mut x);
+    core.statistics.newton_iterations += probe.assemblies;
+    found.map_err(|failure| match failure {
+        Failure::Evaluation(error) => Refusal::Evaluation(error),
+        Failure::Close(gap) => Refusal::BranchesClose { gap },
+        _ => Refusal::Orientation,
+    })
 }
 
 /// The points in order, if there are `k` different ones.

@@ -8,11 +8,13 @@ use crate::events::{
 };
 use crate::problem::Problem;
 use crate::singular::{
-    Crossed, SAME_PARAMETER, SEEDS, fold_form, locate_branch_points, locate_hopf,
+    Crossed, SAME_PARAMETER, SEEDS, fold_form, locate_branch_point_near, locate_branch_points,
+    locate_hopf,
 };
 use crate::step::{Constraint, Core, Precision, Refusal, State};
 
-/// Part of the step to which a Hopf point is bracketed before Newton's method takes over.
+/// Part of the step to which a Hopf point is bracketed before Newton's method takes over, and a branch
+/// point towards which it left the domain.
 const BRACKET: f64 = 1e-3;
 
 /// A located special point of a step.
@@ -198,6 +200,13 @@ impl<P: Problem> Tracer<'_, P> {
         };
         match locate_branch_points(core, a, b, h, kernel, &SEEDS, final_say) {
             Ok(found) => located.extend(found.into_iter().map(special)),
+            // Newton's method left the domain, as it does where thin films forbid a long way: the point
+            // is bracketed first, on the branch
+            Err(Refusal::Evaluation(_)) if kernel == 1 && !final_say => {
+                locate(core, a, b, h, &candidate, BRACKET * h, work)?;
+                let found = locate_branch_point_near(core, (a, b), h, work, final_say)?;
+                located.push(special(found));
+            }
             Err(refusal) if !final_say || matches!(refusal, Refusal::BranchesClose { .. }) => {
                 return Err(refusal);
             }
