@@ -79,7 +79,12 @@ fn a_grip_s_cycle_leaves_its_files_and_closes() {
     assert_eq!(json["unstable"][0]["modes"], 1);
 
     let (names, rows) = columns(&out.join("cycle.csv"));
-    assert_eq!(names, ["direction", "step", "z0", "force", "energy_total", "event"]);
+    assert_eq!(names[..6], ["direction", "step", "z0", "force", "energy_total", "event"]);
+    // what else the states are unstable to: the bubble between plates that it does not touch goes to one
+    assert_eq!(names[6..], ["unstable_antisymmetric", "unstable_modes", "first_n", "stable"]);
+    assert_eq!((rows[0][6].as_str(), rows[0][9].as_str()), ("1", "no"));
+    assert!(rows.iter().any(|row| row[9] == "yes"));
+    assert_eq!(json["stability"]["followed"]["parities"], serde_json::json!(["symmetric"]));
     assert_eq!(rows.len(), json["points"].as_u64().unwrap() as usize);
     assert_eq!((rows[0][2].as_str(), rows.last().unwrap()[2].as_str()), ("1.2", "1.2"));
     assert_eq!(rows.iter().filter(|row| row[5] == "jump").count(), 2);

@@ -30,14 +30,15 @@ fn a_trace_sees_where_mirror_symmetry_is_lost() {
     let output = arclen(place.path(), &["trace", "two-plates", "--elements", "200", "--out", "o"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let shown = String::from_utf8(output.stdout).unwrap();
-    assert!(shown.contains("against axisymmetric modes only, with and without mirror"), "{shown}");
+    assert!(shown.contains("with and without symmetry, torsion left out"), "{shown}");
     let out = place.path().join("o");
     let titles = fs::read_to_string(out.join("branch.csv")).unwrap();
     let titles: Vec<&str> = titles.lines().next().unwrap().split(',').skip(14).collect();
     let own = ["pole_top", "pole_bottom", "shift", "force_bottom", "contact_radius_bottom"];
-    assert_eq!(titles, [&["contact_radius", "event"][..], &own].concat());
+    let modes = ["unstable_antisymmetric", "unstable_modes", "first_n", "stable"];
+    assert_eq!(titles, [&["contact_radius", "event"][..], &own, &modes].concat());
     let events = json(&out.join("events.json"));
-    assert_eq!(events["stability"]["scan"], "axisymmetric");
+    assert_eq!(events["stability"]["scan"], "full");
     assert_eq!(events["stability"]["parities"], serde_json::json!(["symmetric", "antisymmetric"]));
     let all = events["events"].as_array().unwrap();
     let of = |kind: &str| -> Vec<f64> {
@@ -65,7 +66,99 @@ fn a_trace_sees_where_mirror_symmetry_is_lost() {
     }
     let picture = fs::read_to_string(out.join("force_distance.svg")).unwrap();
     let words = |line: &str| picture.lines().any(|l| l.trim() == line);
+    assert!(words("stable"));
+    // modes with waves turn where they do about the half shell
+    let output = arclen(place.path(), &["trace", "fig12", "--elements", "200", "--out", "h"]);
+    assert_eq!(output.status.code(), Some(0));
+    let half = json(&place.path().join("h/events.json"));
+    let waves = |of: &Value| -> Vec<(i64, f64, i64)> {
+        let all = of["events"].as_array().unwrap().iter();
+        let turn = |e: &Value| {
+            let change = e["modes_after"].as_i64()? - e["modes_before"].as_i64()?;
+            Some((e["n"].as_i64().filter(|n| *n > 0)?, e["z0"].as_f64()?, change))
+        };
+        all.filter_map(turn).collect()
+    };
+    let (whole, half) = (waves(&events), waves(&half));
+    assert!(whole.len() > 20 && whole.len() == half.len(), "{} {}", whole.len(), half.len());
+    for (a, b) in whole.iter().zip(&half) {
+        // both are enclosed to 1e-10
+        assert!(a.0 == b.0 && a.2 == b.2 && (a.1 - b.1).abs() < 3e-10, "{a:?} {b:?}");
+    }
+
+    // the same without: said, and drawn as what it is
+    let line = "trace two-plates --elements 60 --set stability.scan=axisymmetric --out a";
+    let output = arclen(place.path(), &line.split(' ').collect::<Vec<_>>());
+    let shown = String::from_utf8(output.stdout).unwrap();
+    assert!(shown.contains("against axisymmetric modes only, with and without mirror"), "{shown}");
+    assert_eq!(json(&place.path().join("a/events.json"))["stability"]["scan"], "axisymmetric");
+    let picture = fs::read_to_string(place.path().join("a/force_distance.svg")).unwrap();
+    let words = |line: &str| picture.lines().any(|l| l.trim() == line);
     assert!(words("stable to axisymmetric modes") && !words("stable"));
+}
+
+/// Under a grip the bubble leaves its mirror image on both ways; what its jumps dissipate is the area of
+/// the loop, and the modes that it looks at and those that it only counts are said.
+#[test]
+fn a_cycle_leaves_the_symmetric_branch_and_comes_back() {
+    let place = tempfile::tempdir().unwrap();
+    let line = "cycle two-plates --elements 60 --out o --report";
+    let output = arclen(place.path(), &line.split(' ').collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let shown = String::from_utf8(output.stdout).unwrap();
+    assert!(shown.contains("against axisymmetric modes with and without mirror"), "{shown}");
+    assert!(shown.contains("unstable to others, first on approach"), "{shown}");
+    let out = place.path().join("o");
+    let cycle = json(&out.join("cycle.json"));
+    assert_eq!(cycle["stopped_because"], "closed-loop");
+    let ways: Vec<&str> = cycle["jumps"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|j| j["direction"].as_str().unwrap())
+        .collect();
+    assert_eq!(ways, ["approach", "approach", "retract", "retract"]);
+    let number = |name: &str| cycle[name].as_f64().unwrap();
+    let (lost, area) = (number("dissipated_total"), number("loop_area"));
+    assert!(lost > 0.0 && (lost - area).abs() < 1e-6 * lost, "{lost} {area}");
+    let followed = &cycle["stability"]["followed"];
+    assert_eq!(followed["parities"], serde_json::json!(["symmetric", "antisymmetric"]));
+    assert_eq!(cycle["stability"]["scan"], "full");
+    assert!(cycle["stability"]["unstable_states"].as_u64().unwrap() > 10);
+    // the flat shell is stable to everything, the one with a dimple is not
+    let text = fs::read_to_string(out.join("cycle.csv")).unwrap();
+    let last: Vec<&str> = text.lines().skip(1).map(|l| l.rsplit(',').next().unwrap()).collect();
+    assert!(last.contains(&"no") && last[0] == "yes" && last[last.len() - 1] == "yes");
+    for file in ["loop.svg", "jump-4.svg", "report.html", "branch.csv"] {
+        assert!(out.join(file).exists(), "{file}");
+    }
+}
+
+/// Where no cycle can be it is said why and what to do.
+#[test]
+fn a_cycle_that_cannot_be_says_what_to_do() {
+    let place = tempfile::tempdir().unwrap();
+    let refused = |more: &[&str], says: &[&str]| {
+        let sets = more.iter().flat_map(|text| ["--set", text]);
+        let line = ["cycle", "two-plates", "--elements", "40"];
+        let line: Vec<&str> = line.into_iter().chain(sets).collect();
+        let output = arclen(place.path(), &line);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{more:?} {error}");
+        for words in says {
+            assert!(error.contains(words), "{more:?}: {words} in {error}");
+        }
+    };
+    refused(&["path.end=-0.2"], &["path.end", "-0.2", "positive"]);
+    refused(&["path.start=0.9"], &["path.start", "0.9", "greater than 1"]);
+    refused(&["path.end=1.15"], &["path.end", "different from path.start"]);
+    refused(&["plate.bottom.film=0"], &["plate.bottom.film", "positive"]);
+    let cantilever = ["plate.top.device=cantilever", "plate.top.stiffness=30"];
+    let crossed = [&cantilever[..], &["path.start=-0.5", "path.end=0.5"]].concat();
+    refused(&crossed, &["path.start", "-0.5", "the plates cross", "larger path.start"]);
+    // no state between plates that attract so strongly
+    let strong = ["plate.top.adhesion=0.5", "plate.bottom.adhesion=0.5"];
+    refused(&strong, &["path.start = 1.15", "no solution at the start", "larger path.start"]);
 }
 
 /// From pull-off the bubble leaves one plate; the diagram has both ways it may take.
@@ -149,16 +242,10 @@ fn bad_plates_are_named_with_what_to_do() {
     let error = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(error.contains("plate.bottom") && error.contains("equator = \"held\""), "{error}");
-    for command in ["cycle", "map"] {
-        let line: Vec<&str> = match command {
-            "map" => vec!["map", "two-plates", "--over", "film"],
-            _ => vec![command, "two-plates"],
-        };
-        let output = arclen(place.path(), &line);
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{error}");
-        assert!(error.contains("mirror-symmetric states only"), "{error}");
-    }
+    let output = arclen(place.path(), &["map", "two-plates", "--over", "film"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("mirror-symmetric states only"), "{error}");
 }
 
 /// The symmetric branch of Fig. 12 with the asymmetric ones: the bubble on one plate, one dimple

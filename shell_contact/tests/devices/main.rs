@@ -8,6 +8,7 @@ mod cycles;
 mod jumps;
 mod limits;
 mod maxwell;
+mod meetings;
 mod under;
 
 use continuation::{Branch, Settings};
