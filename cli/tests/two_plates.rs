@@ -287,6 +287,7 @@ fn asymmetric_branches_stand_beside_the_symmetric_one() {
     }
     // a branch that is stable to axisymmetric modes at the closest plates, flat at one pole
     let (mut ends, mut seen, mut all_stable) = (Vec::new(), Vec::new(), Vec::new());
+    let mut turns = 0;
     for branch in &branches[1..] {
         let name = branch["csv"].as_str().unwrap();
         assert!(name.ends_with("-asymmetric.csv"));
@@ -309,12 +310,19 @@ fn asymmetric_branches_stand_beside_the_symmetric_one() {
         for (k, word) in words.iter().enumerate() {
             assert_eq!(*word, says(unstable[k] + modes[k]), "{name}, point {k}");
         }
+        // where waves turn is found
+        assert_eq!(branch["stability"]["not_located"], 0, "{name}");
+        let events = branch["events"].as_array().unwrap();
+        let turned = events.iter().filter(|e| e["kind"] == "symmetry-breaking");
+        assert!(turned.clone().all(|e| e["n"].as_i64().unwrap() > 0));
+        turns += turned.count();
         all_stable.push(words.iter().all(|word| *word == "yes"));
         seen.push(modes.iter().any(|n| *n > 0.0));
     }
     // away from both plates the shell is round; between them a dimple is not
     assert_eq!(seen.iter().filter(|seen| **seen).count(), 3, "{seen:?}");
     assert!(!all_stable.contains(&true));
+    assert!(turns > 30, "{turns}");
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
     assert_eq!(ends.len(), 2);
     assert!(ends[0].0 == 0.0 && ends[1].0 == 1.0 && ends[0].1 > 0.1, "{ends:?}");

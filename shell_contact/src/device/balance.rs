@@ -135,9 +135,17 @@ impl<P: Loading> Integral<'_, P> {
                 .collect(),
             z0: mix(a.place.z0, b.place.z0, ta.dz0, tb.dz0),
         };
-        if self.walker.correct(&a.place, 0.5 * length * length, &mut place).is_none() {
-            self.error += whole.abs();
-            return Ok(whole);
+        let half = 0.5 * length * length;
+        if self.walker.correct(&a.place, half, &mut place).is_none() {
+            // at a branch point the tangent may be another branch's: from the middle of the chord
+            let ends = a.place.u.iter().zip(&b.place.u);
+            place.u = ends.map(|(a, b)| 0.5 * (a + b)).collect();
+            place.z0 = 0.5 * (a.place.z0 + b.place.z0);
+            if self.walker.correct(&a.place, half, &mut place).is_none() {
+                let plain = 0.5 * (a.force + b.force) * (b.place.z0 - a.place.z0);
+                self.error += (whole - plain).abs();
+                return Ok(plain);
+            }
         }
         let tangent = self.walker.tangent(&place)?;
         let force = self.walker.force(&place)?;

@@ -121,6 +121,10 @@ const SAME: f64 = 1e-8;
 /// How far beyond a branch point states of other branches are sought: the nearer one is nearer to it
 /// by the square root of their ratio at least, unless it is a jump away.
 const BEYOND: [f64; 2] = [1e-6, 1e-8];
+/// States so near to a branch point, in `R0`, are no jump away: it is known to the root of rounding.
+const AT_POINT: f64 = 1e-6;
+/// Part of the way by which the parameter must go back to be called so.
+const TURN: f64 = 1e-9;
 
 /// Travels from `x`, a stable state near the start, to the end and back. The observer hears of every
 /// point and may stop the cycle.
@@ -300,7 +304,9 @@ impl<P: Loading> Traveller<'_, P> {
                 self.record(direction, &point, event.as_ref());
             }
             fresh = true;
-            if (point.p - self.parameter) * (target - self.parameter) < 0.0 {
+            let (step, ahead) = (point.p - self.parameter, target - self.parameter);
+            let way = (self.settings.end - self.settings.start).abs();
+            if step * ahead < 0.0 && step.abs() > TURN * way {
                 let detail = format!(
                     "at {name} = {:.10} the branch turns back without a loss of stability",
                     self.parameter
@@ -379,7 +385,7 @@ impl<P: Loading> Traveller<'_, P> {
             }
         }
         // a tenth or less where branches meet, all of it after a jump
-        if distances[1] > 0.5 * distances[0] {
+        if distances[0] > AT_POINT && distances[1] > 0.5 * distances[0] {
             return false;
         }
         let before = std::mem::replace(&mut self.x, beyond);

@@ -16,7 +16,8 @@
 //! the film has no friction and the sphere is isotropic, the rotation of the shell's material under
 //! its own dents (both `n = 1`). Without any film there are more (module `ends`): then counts of
 //! `n = 0` and `n = 1` are uncertain. About a state that is not its own mirror image there are no two
-//! classes, and the whole meridian is one matrix ([`WholeModes`]). Torsion (`n = 0`, along `φ`), friction and self-contact are
+//! classes, and the whole meridian is one matrix ([`WholeModes`], and [`scan_whole_branch`] along a
+//! branch). Torsion (`n = 0`, along `φ`), friction and self-contact are
 //! not examined.
 //!
 //! ```

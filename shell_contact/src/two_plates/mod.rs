@@ -15,7 +15,8 @@
 //! in equilibrium both plates carry the same force. [`SupportedProblem`] holds the equator in the
 //! mid-plane instead, or puts the upper plate on a spring. Among the axisymmetric variations those
 //! that break the mirror symmetry are counted: the zero of their stiffness is a branch point here.
-//! Modes `cos nφ` are those of [`crate::modes::WholeModes`]. That a dimple touches anything but the
+//! Modes `cos nφ` are those of [`crate::modes::WholeModes`]; cycles those of
+//! [`crate::device::travel`], which begin at a [`stable_start`]. That a dimple touches anything but the
 //! opposite pole is not noticed.
 //!
 //! ```

@@ -30,7 +30,7 @@ fn onsets(problem: &ContactProblem, range: (f64, f64), step: f64) -> Vec<Onset> 
     for n in 0..=40 {
         for parity in Parity::BOTH {
             let own: Vec<_> =
-                scanned.events.iter().filter(|e| (e.n, e.parity) == (n, parity)).collect();
+                scanned.events.iter().filter(|e| (e.n, e.parity) == (n, Some(parity))).collect();
             for (k, point) in scanned.points.iter().enumerate() {
                 let count = match n {
                     0 if parity == Parity::Symmetric => continue,
