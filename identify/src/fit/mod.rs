@@ -1,0 +1,288 @@
+//! The fit: a grid of starts on a coarse mesh, descents from the best, the best polished on a finer one.
+//!
+//! Nothing depends on clocks or chance: the same curve and the same knowledge give the same fit. Budgets are
+//! numbers of points and of evaluations.
+
+pub mod descent;
+pub mod objective;
+pub mod starts;
+
+use crate::branch::Effort;
+use crate::data::{Curve, Direction};
+use crate::error::FitError;
+use crate::lever::LeverBranch;
+use crate::model::Model;
+use crate::parameters::{Key, LawName, Parameters};
+use descent::{Limits, Minimum, descend};
+use nalgebra::DVector;
+use objective::{Objective, Prior};
+use starts::{Look, Start, grid, look};
+use std::f64::consts::PI;
+
+/// What the laboratory knows and asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setup {
+    /// The membrane's law.
+    pub law: LawName,
+    /// Poles that deform: 2 (lever and substrate) or 1.
+    pub contacts: u8,
+    /// Known values, SI; NaN where nothing is known.
+    pub base: Parameters,
+    /// What is looked for.
+    pub free: Vec<Key>,
+    /// What is known of it.
+    pub priors: Vec<Prior>,
+    /// Relative standard deviation of the lever's stiffness.
+    pub spring_constant_sd: f64,
+    /// Soft-L1 in place of squares.
+    pub robust: bool,
+    /// Segments that are fitted; both without.
+    pub only: Option<Direction>,
+    /// Piezo heights that are fitted, m; all without.
+    pub range: Option<(f64, f64)>,
+}
+
+impl Setup {
+    /// The usual fit: moduli, film, radius, contact point and baseline are looked for.
+    pub fn new(law: LawName, base: Parameters, priors: Vec<Prior>) -> Setup {
+        use Key::{Adhesion, Bending, Chi, Contact, Film, Offset, Radius, Tilt};
+        Setup {
+            law,
+            contacts: 2,
+            base,
+            free: vec![Chi, Bending, Adhesion, Film, Radius, Contact, Offset, Tilt],
+            priors,
+            spring_constant_sd: 0.1,
+            robust: false,
+            only: None,
+            range: None,
+        }
+    }
+}
+
+/// Fewest samples in contact.
+pub const FEWEST_IN_CONTACT: usize = 12;
+/// Fewest samples of baseline.
+pub const FEWEST_OF_BASELINE: usize = 8;
+/// Samples of the thinned curve on which starts are compared.
+const THINNED: usize = 400;
+/// Descents from the grid.
+const DESCENTS: usize = 6;
+/// Elements per wavelength of the shell on the coarse mesh, and the fewest: forces are good to 1e-4.
+const PER_WAVELENGTH: f64 = 15.0;
+/// The fewest and the most elements, coarse.
+const COARSE: (f64, f64) = (56.0, 120.0);
+/// The same, fine: forces are good to 1e-5.
+const FINE: (f64, f64) = (96.0, 320.0);
+/// Error of the interpolated force, in standard deviations of the noise, coarse and fine.
+const COARSE_ERROR: f64 = 0.2;
+/// The same, fine: `√N` samples times this is little beside 1.
+const FINE_ERROR: f64 = 0.005;
+/// Most points of a branch.
+const POINTS: usize = 500;
+
+/// A fit before its uncertainty.
+#[derive(Debug, Clone)]
+pub struct Fitted<'a> {
+    /// The problem with the samples that count.
+    pub objective: Objective<'a>,
+    /// Its best minimum.
+    pub best: Minimum,
+    /// The branch there.
+    pub branch: LeverBranch,
+    /// Other minima that descents ended in, with their costs on the coarse mesh and that of the best.
+    pub others: Vec<(Parameters, f64)>,
+    /// Cost of the best on the coarse mesh of the descents.
+    pub coarse_cost: f64,
+    /// Starts that were compared.
+    pub starts: usize,
+    /// Evaluations of the model.
+    pub evaluations: usize,
+    /// What the curve shows without a model.
+    pub look: Look,
+}
+
+/// Elements for a shell, coarse or fine.
+pub fn elements(p: &Parameters, (least, most): (f64, f64), factor: f64) -> usize {
+    let b = crate::branch::groups(p).bending;
+    let needed = PER_WAVELENGTH * factor * 0.25 / b.sqrt().sqrt();
+    needed.clamp(least, most).ceil() as usize
+}
+
+/// Which samples of a curve a setup uses.
+pub fn used_samples(curve: &Curve, setup: &Setup) -> Vec<bool> {
+    let mut used = Vec::with_capacity(curve.len());
+    for segment in &curve.segments {
+        let direction = setup.only.is_none_or(|only| only == segment.direction);
+        for height in &segment.height {
+            let within = setup.range.is_none_or(|(a, b)| (a.min(b)..=a.max(b)).contains(height));
+            used.push(direction && within);
+        }
+    }
+    used
+}
+
+/// Checks that there is something to fit.
+///
+/// # Errors
+/// Says which quantity is missing, or what of the curve is too little.
+pub fn check<'a>(curve: &'a Curve, setup: &Setup) -> Result<(Objective<'a>, Look), FitError> {
+    let p = &setup.base;
+    for key in [Key::SpringConstant, Key::Radius] {
+        if !p[key].is_finite() {
+            return Err(FitError::Unknown { key: key.name() });
+        }
+    }
+    for key in Key::ALL {
+        let unused = key == Key::Contact || setup.free.contains(&key);
+        if !unused && !p[key].is_finite() {
+            return Err(FitError::Unknown { key: key.name() });
+        }
+    }
+    let noise = curve.noise();
+    if !(noise > 0.0 && noise.is_finite()) {
+        return Err(FitError::NoNoise);
+    }
+    let Some(look) = look(curve, noise, p[Key::SpringConstant]) else {
+        return Err(FitError::NoContact { fewest: FEWEST_IN_CONTACT });
+    };
+    if look.in_contact < FEWEST_IN_CONTACT {
+        return Err(FitError::FewInContact { found: look.in_contact, fewest: FEWEST_IN_CONTACT });
+    }
+    if look.baseline < FEWEST_OF_BASELINE {
+        return Err(FitError::NoBaseline { found: look.baseline, fewest: FEWEST_OF_BASELINE });
+    }
+    let radius = p[Key::Radius];
+    let span = curve.farthest() - curve.nearest();
+    if !(1e-3..=1e3).contains(&(span / radius)) {
+        return Err(FitError::Scale { span, radius });
+    }
+    let model = Model {
+        law: setup.law,
+        contacts: setup.contacts,
+        nominal_spring_constant: p[Key::SpringConstant],
+        effort: Effort {
+            elements: COARSE.0 as usize,
+            points: POINTS,
+            force_error: COARSE_ERROR * noise,
+        },
+    };
+    let ln = |low: f64, high: f64| (low.ln(), high.ln());
+    let bounds = setup.free.iter().map(|key| match key {
+        Key::Chi => ln(1e-4, 1e5),
+        Key::Bending => ln(1e-21, 1e-9),
+        Key::Adhesion => ln(1e-8, 1.0),
+        Key::Film => ln(2e-3 * radius, 0.25 * radius),
+        Key::Radius => ln(radius / 4.0, radius * 4.0),
+        Key::Pressure => ln(1.0, 1e9),
+        Key::SpringConstant => ln(p[Key::SpringConstant] / 4.0, p[Key::SpringConstant] * 4.0),
+        Key::Contact => (curve.nearest() - 2.0 * radius, curve.farthest() + 2.0 * radius),
+        Key::SurfaceTension => (0.0, 10.0),
+        Key::GasExponent => (0.0, 3.0),
+        Key::Poisson => (if setup.law == LawName::Skalak { 0.0 } else { -0.9 }, 0.5),
+        Key::MooneyB => (0.0, 1.0),
+        Key::Offset | Key::Tilt => (f64::NEG_INFINITY, f64::INFINITY),
+    });
+    let objective = Objective {
+        curve,
+        used: used_samples(curve, setup),
+        noise,
+        model,
+        base: *p,
+        free: setup.free.clone(),
+        priors: setup.priors.clone(),
+        bounds: bounds.collect(),
+        robust: setup.robust,
+    };
+    Ok((objective, look))
+}
+
+/// Fits a curve.
+///
+/// # Errors
+/// When there is nothing to fit, or no start leads anywhere.
+pub fn fit<'a>(curve: &'a Curve, setup: &Setup) -> Result<Fitted<'a>, FitError> {
+    let (mut full, look) = check(curve, setup)?;
+    let stride = (curve.len() / THINNED).max(1);
+    let thin_curve = curve.thinned(stride);
+    let mut thin = Objective { curve: &thin_curve, ..full.clone() };
+    thin.used = used_samples(&thin_curve, setup);
+    let starts = grid(&thin, &look);
+    let Some(_) = starts.first() else { return Err(FitError::NoStart) };
+    let mut evaluations = 2 * starts.len();
+    let mut minima: Vec<Minimum> = Vec::new();
+    for start in starts.iter().take(DESCENTS) {
+        if let Some(found) = coarse(&mut thin, start) {
+            evaluations += found.evaluations;
+            minima.push(found);
+        }
+    }
+    minima.sort_by(|a, b| a.at.cost.total_cmp(&b.at.cost));
+    let Some(first) = minima.first() else { return Err(FitError::NoStart) };
+    // on all samples, then on the fine mesh without those beside jumps
+    let mut x = first.x.clone();
+    full.model.effort.elements = elements(&full.parameters(&x), COARSE, 1.0);
+    if let Some(found) = descend(&full, &x, None, Limits { evaluations: 25, tolerance: 1e-2 }) {
+        evaluations += found.evaluations;
+        leave_out_jumps(&mut full, &found);
+        x = found.x;
+    }
+    full.model.effort.elements = elements(&full.parameters(&x), FINE, 2.0);
+    full.model.effort.force_error = FINE_ERROR * full.noise;
+    let limits = Limits { evaluations: 40, tolerance: 1e-4 };
+    let Some(best) = descend(&full, &x, None, limits) else { return Err(FitError::NoStart) };
+    evaluations += best.evaluations;
+    let p = full.parameters(&best.x);
+    let branch = full.model.branch(curve, &p, &full.free).map_err(FitError::Model)?;
+    let coarse_cost = first.at.cost;
+    let others = distinct(&thin, &minima, stride as f64);
+    let starts = starts.len();
+    Ok(Fitted { objective: full, best, branch, others, coarse_cost, starts, evaluations, look })
+}
+
+/// Descends from a start on a coarse mesh and the thinned curve.
+fn coarse(thin: &mut Objective<'_>, start: &Start) -> Option<Minimum> {
+    thin.model.effort.elements = elements(&start.parameters, COARSE, 1.0);
+    let x = thin.place(&start.parameters);
+    descend(thin, &x, None, Limits { evaluations: 30, tolerance: 2e-2 })
+}
+
+/// Leaves out the samples beside jumps, and those beyond the end of a stretch: there the model's slope is
+/// infinite, and a straight line through it says nothing.
+fn leave_out_jumps(objective: &mut Objective<'_>, found: &Minimum) {
+    let stretch = &found.at.prediction.stretch;
+    let inside = &found.at.prediction.inside;
+    let mut first = 0;
+    for segment in &objective.curve.segments {
+        let end = first + segment.force.len();
+        for i in first..end {
+            if !inside[i] {
+                objective.used[i] = false;
+            }
+            if i > first && stretch[i] != stretch[i - 1] {
+                for near in i.saturating_sub(2).max(first)..(i + 2).min(end) {
+                    objective.used[near] = false;
+                }
+            }
+        }
+        first = end;
+    }
+}
+
+/// Minima that are neither the best nor within three standard deviations of it, but fit nearly as well:
+/// `χ²` less than 25 larger, of all samples.
+fn distinct(thin: &Objective<'_>, minima: &[Minimum], stride: f64) -> Vec<(Parameters, f64)> {
+    let Some(best) = minima.first() else { return Vec::new() };
+    let mut kept: Vec<&Minimum> = vec![best];
+    for minimum in &minima[1..] {
+        let near = kept.iter().any(|other| {
+            let d: DVector<f64> = &minimum.x - &other.x;
+            // the distance in standard deviations, squared
+            d.dot(&(&other.at.normal * &d)) * stride < 9.0 * d.len() as f64 * PI.min(2.0)
+        });
+        if !near && (minimum.at.cost - best.at.cost) * stride < 25.0 {
+            kept.push(minimum);
+        }
+    }
+    kept[1..].iter().map(|m| (thin.parameters(&m.x), m.at.cost)).collect()
+}

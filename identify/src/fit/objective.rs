@@ -1,0 +1,170 @@
+//! What a fit makes small: weighted residuals, and what is known beforehand.
+//!
+//! ```text
+//! 2 Φ = Σ_i ρ((y_i − F_i)²/σ²) + Σ_k ((x_k − m_k)/s_k)²
+//! ```
+//!
+//! `ρ(t) = t`, or soft-L1 `2c²(√(1 + t/c²) − 1)` when robust. Priors are normal in the coordinate (the
+//! logarithm, for positive quantities).
+
+use crate::data::Curve;
+use crate::error::ModelError;
+use crate::model::{Model, Prediction};
+use crate::parameters::{Key, Parameters};
+use nalgebra::{DMatrix, DVector};
+
+/// Knowledge of a quantity beforehand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prior {
+    /// Of what.
+    pub key: Key,
+    /// Its value, SI.
+    pub value: f64,
+    /// Standard deviation, SI.
+    pub sd: f64,
+}
+
+impl Prior {
+    /// Centre and standard deviation in the coordinate.
+    pub fn in_coordinate(&self) -> (f64, f64) {
+        (self.key.coordinate(self.value), self.sd / self.key.slope(self.value))
+    }
+}
+
+/// Where soft-L1 turns from squares to absolute values, in standard deviations.
+const SOFT: f64 = 2.0;
+
+/// A fit's problem.
+#[derive(Debug, Clone)]
+pub struct Objective<'a> {
+    /// The curve.
+    pub curve: &'a Curve,
+    /// Samples that count.
+    pub used: Vec<bool>,
+    /// Noise of the force, N.
+    pub noise: f64,
+    /// The model.
+    pub model: Model,
+    /// Values of all that is not free.
+    pub base: Parameters,
+    /// What is looked for.
+    pub free: Vec<Key>,
+    /// What is known of it.
+    pub priors: Vec<Prior>,
+    /// Bounds, in the coordinates, of what is free.
+    pub bounds: Vec<(f64, f64)>,
+    /// Soft-L1 in place of squares.
+    pub robust: bool,
+}
+
+/// The objective at a place.
+#[derive(Debug, Clone)]
+pub struct Evaluation {
+    /// `2Φ`.
+    pub cost: f64,
+    /// The part of the data.
+    pub chi2: f64,
+    /// `JᵀJ` over the coordinates, priors included.
+    pub normal: DMatrix<f64>,
+    /// `Jᵀr`, with `r = (F − y)/σ`: half the gradient of the cost.
+    pub gradient: DVector<f64>,
+    /// The model at every sample.
+    pub prediction: Prediction,
+    /// Jacobians of the shell assembled.
+    pub assemblies: usize,
+}
+
+impl Objective<'_> {
+    /// The parameters at a place.
+    pub fn parameters(&self, x: &DVector<f64>) -> Parameters {
+        let mut p = self.base;
+        for (key, x) in self.free.iter().zip(x.iter()) {
+            p[*key] = key.value(*x);
+        }
+        p
+    }
+
+    /// The place of parameters.
+    pub fn place(&self, p: &Parameters) -> DVector<f64> {
+        DVector::from_iterator(self.free.len(), self.free.iter().map(|key| key.coordinate(p[*key])))
+    }
+
+    /// The nearest place within the bounds.
+    pub fn clamp(&self, x: &mut DVector<f64>) {
+        for (x, (low, high)) in x.iter_mut().zip(&self.bounds) {
+            *x = x.clamp(*low, *high);
+        }
+    }
+
+    /// Number of samples that count.
+    pub fn count(&self) -> usize {
+        self.used.iter().filter(|u| **u).count()
+    }
+
+    /// Cost, gradient and normal matrix.
+    ///
+    /// # Errors
+    /// When the model has no value there.
+    pub fn evaluate(&self, x: &DVector<f64>) -> Result<Evaluation, ModelError> {
+        let p = self.parameters(x);
+        let branch = self.model.branch(self.curve, &p, &self.free)?;
+        let weight = 1.0 / self.noise;
+        let prediction = self.model.predict(self.curve, &branch, &p, &self.free, weight);
+        let mut evaluation = self.sum(prediction);
+        evaluation.assemblies = branch.nodes().len();
+        self.add_priors(x, &mut evaluation);
+        Ok(evaluation)
+    }
+
+    /// The sums over the samples.
+    pub fn sum(&self, prediction: Prediction) -> Evaluation {
+        let n = self.free.len();
+        let weight = 1.0 / self.noise;
+        let mut normal = DMatrix::zeros(n, n);
+        let mut gradient = DVector::zeros(n);
+        let mut chi2 = 0.0;
+        let measured = self.curve.segments.iter().flat_map(|s| &s.force);
+        for (i, y) in measured.enumerate() {
+            if !self.used[i] {
+                continue;
+            }
+            let r = weight * (prediction.force[i] - y);
+            let (rho, w) = self.loss(r);
+            chi2 += rho;
+            let row = &prediction.by_key[i * n..(i + 1) * n];
+            let w2 = w * weight * weight;
+            for a in 0..n {
+                gradient[a] += w * weight * r * row[a];
+                for b in 0..=a {
+                    normal[(a, b)] += w2 * row[a] * row[b];
+                }
+            }
+        }
+        for a in 0..n {
+            for b in 0..a {
+                normal[(b, a)] = normal[(a, b)];
+            }
+        }
+        Evaluation { cost: chi2, chi2, normal, gradient, prediction, assemblies: 0 }
+    }
+
+    /// `ρ(r²)` and its slope.
+    fn loss(&self, r: f64) -> (f64, f64) {
+        if !self.robust {
+            return (r * r, 1.0);
+        }
+        let root = (1.0 + r * r / (SOFT * SOFT)).sqrt();
+        (2.0 * SOFT * SOFT * (root - 1.0), 1.0 / root)
+    }
+
+    fn add_priors(&self, x: &DVector<f64>, e: &mut Evaluation) {
+        for prior in &self.priors {
+            let Some(k) = self.free.iter().position(|key| *key == prior.key) else { continue };
+            let (centre, sd) = prior.in_coordinate();
+            let miss = (x[k] - centre) / sd;
+            e.cost += miss * miss;
+            e.gradient[k] += miss / sd;
+            e.normal[(k, k)] += 1.0 / (sd * sd);
+        }
+    }
+}
