@@ -5,9 +5,14 @@ pub mod branch;
 pub mod data;
 pub mod error;
 pub mod fit;
+pub mod identify;
 pub mod lever;
 pub mod model;
 pub mod parameters;
+pub mod record;
+mod remarks;
+pub mod uncertainty;
 
-pub use error::ModelError;
+pub use error::{FitError, ModelError};
+pub use identify::{Identification, Profiles, identify};
 pub use parameters::{Key, LawName, Parameters};

@@ -6,6 +6,7 @@ use crate::data::Curve;
 use crate::error::ModelError;
 use crate::lever::{LeverBranch, Reading};
 use crate::parameters::{Key, LawName, Parameters};
+use shell_contact::Resolution;
 
 /// Gap of the free shell, in `R0`, from which the branch starts at the farthest: beyond it the film pulls
 /// with less than 1e-4 of its pull at contact.
@@ -72,7 +73,7 @@ pub fn groups_of(keys: &[Key]) -> Vec<Group> {
 }
 
 impl Model {
-    /// The branch that spans the heights of a curve.
+    /// The branch that spans the heights of a curve, and how well its mesh resolves it.
     ///
     /// # Errors
     /// When the parameters are impossible or the branch ends before the data do.
@@ -81,7 +82,7 @@ impl Model {
         curve: &Curve,
         p: &Parameters,
         keys: &[Key],
-    ) -> Result<LeverBranch, ModelError> {
+    ) -> Result<(LeverBranch, Resolution), ModelError> {
         let range = (p[Key::Contact] - curve.farthest(), p[Key::Contact] - curve.nearest());
         self.branch_over(range, p, keys)
     }
@@ -95,7 +96,7 @@ impl Model {
         (least, most): (f64, f64),
         p: &Parameters,
         keys: &[Key],
-    ) -> Result<LeverBranch, ModelError> {
+    ) -> Result<(LeverBranch, Resolution), ModelError> {
         let reach = f64::from(self.contacts) * p[Key::Radius];
         let needed = most + BEYOND * (most - least);
         let film = NEAREST_GAP * p[Key::Film] / p[Key::Radius];
@@ -110,7 +111,8 @@ impl Model {
             let reached = farthest.fold(f64::NEG_INFINITY, f64::max);
             return Err(ModelError::TooShort { reached, needed });
         }
-        LeverBranch::new(branch, p, self.contacts)
+        let resolution = branch.resolution;
+        Ok((LeverBranch::new(branch, p, self.contacts)?, resolution))
     }
 
     /// What would be read, on the stretches with the least misfit to the curve. `weight` is one over the

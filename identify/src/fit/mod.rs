@@ -16,7 +16,7 @@ use crate::parameters::{Key, LawName, Parameters};
 use descent::{Limits, Minimum, descend};
 use nalgebra::DVector;
 use objective::{Objective, Prior};
-use starts::{Look, Start, grid, look};
+use starts::{Look, grid, look};
 use std::f64::consts::PI;
 
 /// What the laboratory knows and asks for.
@@ -71,11 +71,11 @@ const DESCENTS: usize = 6;
 /// Elements per wavelength of the shell on the coarse mesh, and the fewest: forces are good to 1e-4.
 const PER_WAVELENGTH: f64 = 15.0;
 /// The fewest and the most elements, coarse.
-const COARSE: (f64, f64) = (56.0, 120.0);
+pub(crate) const COARSE: (f64, f64) = (56.0, 120.0);
 /// The same, fine: forces are good to 1e-5.
 const FINE: (f64, f64) = (96.0, 320.0);
 /// Error of the interpolated force, in standard deviations of the noise, coarse and fine.
-const COARSE_ERROR: f64 = 0.2;
+pub(crate) const COARSE_ERROR: f64 = 0.2;
 /// The same, fine: `√N` samples times this is little beside 1.
 const FINE_ERROR: f64 = 0.005;
 /// Most points of a branch.
@@ -90,10 +90,10 @@ pub struct Fitted<'a> {
     pub best: Minimum,
     /// The branch there.
     pub branch: LeverBranch,
+    /// Whether its mesh resolves it.
+    pub branch_resolved: bool,
     /// Other minima that descents ended in, with their costs on the coarse mesh and that of the best.
     pub others: Vec<(Parameters, f64)>,
-    /// Cost of the best on the coarse mesh of the descents.
-    pub coarse_cost: f64,
     /// Starts that were compared.
     pub starts: usize,
     /// Evaluations of the model.
@@ -211,40 +211,106 @@ pub fn fit<'a>(curve: &'a Curve, setup: &Setup) -> Result<Fitted<'a>, FitError> 
     let Some(_) = starts.first() else { return Err(FitError::NoStart) };
     let mut evaluations = 2 * starts.len();
     let mut minima: Vec<Minimum> = Vec::new();
+    // all a little, the better half on
     for start in starts.iter().take(DESCENTS) {
-        if let Some(found) = coarse(&mut thin, start) {
+        let x = thin.place(&start.parameters);
+        if let Some(found) = coarse(&mut thin, &x, FIRST) {
             evaluations += found.evaluations;
             minima.push(found);
         }
     }
     minima.sort_by(|a, b| a.at.cost.total_cmp(&b.at.cost));
-    let Some(first) = minima.first() else { return Err(FitError::NoStart) };
-    // on all samples, then on the fine mesh without those beside jumps
-    let mut x = first.x.clone();
-    full.model.effort.elements = elements(&full.parameters(&x), COARSE, 1.0);
-    if let Some(found) = descend(&full, &x, None, Limits { evaluations: 25, tolerance: 1e-2 }) {
-        evaluations += found.evaluations;
-        leave_out_jumps(&mut full, &found);
-        x = found.x;
+    minima.truncate(DESCENTS / 2);
+    for minimum in &mut minima {
+        if !minimum.converged
+            && let Some(found) = coarse(&mut thin, &minimum.x, SECOND)
+        {
+            evaluations += found.evaluations;
+            *minimum = found;
+        }
     }
-    full.model.effort.elements = elements(&full.parameters(&x), FINE, 2.0);
-    full.model.effort.force_error = FINE_ERROR * full.noise;
-    let limits = Limits { evaluations: 40, tolerance: 1e-4 };
-    let Some(best) = descend(&full, &x, None, limits) else { return Err(FitError::NoStart) };
-    evaluations += best.evaluations;
-    let p = full.parameters(&best.x);
-    let branch = full.model.branch(curve, &p, &full.free).map_err(FitError::Model)?;
-    let coarse_cost = first.at.cost;
+    minima.sort_by(|a, b| a.at.cost.total_cmp(&b.at.cost));
+    let Some(first) = minima.first() else { return Err(FitError::NoStart) };
+    let x = first.x.clone();
     let others = distinct(&thin, &minima, stride as f64);
-    let starts = starts.len();
-    Ok(Fitted { objective: full, best, branch, others, coarse_cost, starts, evaluations, look })
+    let polished = polish(&mut full, &x)?;
+    Ok(Fitted {
+        best: polished.best,
+        branch: polished.branch,
+        branch_resolved: polished.resolved,
+        others,
+        starts: starts.len(),
+        evaluations: evaluations + polished.evaluations,
+        look,
+        objective: full,
+    })
 }
 
-/// Descends from a start on a coarse mesh and the thinned curve.
-fn coarse(thin: &mut Objective<'_>, start: &Start) -> Option<Minimum> {
-    thin.model.effort.elements = elements(&start.parameters, COARSE, 1.0);
-    let x = thin.place(&start.parameters);
-    descend(thin, &x, None, Limits { evaluations: 30, tolerance: 2e-2 })
+/// A fit again, from another place.
+///
+/// # Errors
+/// When the model has no value there.
+pub fn refit<'a>(earlier: Fitted<'a>, x: &DVector<f64>) -> Result<Fitted<'a>, FitError> {
+    let mut objective = earlier.objective;
+    let polished = polish(&mut objective, x)?;
+    Ok(Fitted {
+        best: polished.best,
+        branch: polished.branch,
+        branch_resolved: polished.resolved,
+        evaluations: earlier.evaluations + polished.evaluations,
+        objective,
+        ..earlier
+    })
+}
+
+/// The end of a fit.
+struct Polished {
+    best: Minimum,
+    branch: LeverBranch,
+    resolved: bool,
+    evaluations: usize,
+}
+
+/// On all samples, then on the fine mesh without those beside jumps.
+fn polish(full: &mut Objective<'_>, x: &DVector<f64>) -> Result<Polished, FitError> {
+    let mut x = x.clone();
+    let mut evaluations = 0;
+    full.model.effort.elements = elements(&full.parameters(&x), COARSE, 1.0);
+    full.model.effort.force_error = COARSE_ERROR * full.noise;
+    if let Some(found) = descend(full, &x, None, Limits { evaluations: 25, tolerance: 1e-2 }) {
+        evaluations += found.evaluations;
+        leave_out_jumps(full, &found);
+        x = found.x;
+    }
+    full.model.effort.force_error = FINE_ERROR * full.noise;
+    full.model.effort.elements = elements(&full.parameters(&x), FINE, 2.0);
+    let limits = Limits { evaluations: 40, tolerance: 1e-4 };
+    for last in [false, true] {
+        let Some(best) = descend(full, &x, None, limits) else { return Err(FitError::NoStart) };
+        evaluations += best.evaluations;
+        let p = full.parameters(&best.x);
+        let (branch, resolution) =
+            full.model.branch(full.curve, &p, &full.free).map_err(FitError::Model)?;
+        let finer = (full.model.effort.elements as f64 * resolution.factor()).ceil();
+        if resolution.is_enough() || last || full.model.effort.elements as f64 >= FINE.1 {
+            let resolved = resolution.is_enough();
+            return Ok(Polished { best, branch, resolved, evaluations });
+        }
+        full.model.effort.elements = finer.min(FINE.1) as usize;
+        x = best.x;
+    }
+    Err(FitError::NoStart)
+}
+
+/// Evaluations of the descents from the grid: of all, and of those that go on.
+const FIRST: usize = 8;
+/// The same.
+const SECOND: usize = 24;
+
+/// Descends on a coarse mesh and the thinned curve.
+fn coarse(thin: &mut Objective<'_>, x: &DVector<f64>, evaluations: usize) -> Option<Minimum> {
+    thin.model.effort.elements = elements(&thin.parameters(x), COARSE, 1.0);
+    descend(thin, x, None, Limits { evaluations, tolerance: 2e-2 })
 }
 
 /// Leaves out the samples beside jumps, and those beyond the end of a stretch: there the model's slope is

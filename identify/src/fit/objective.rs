@@ -107,7 +107,7 @@ impl Objective<'_> {
     /// When the model has no value there.
     pub fn evaluate(&self, x: &DVector<f64>) -> Result<Evaluation, ModelError> {
         let p = self.parameters(x);
-        let branch = self.model.branch(self.curve, &p, &self.free)?;
+        let (branch, _) = self.model.branch(self.curve, &p, &self.free)?;
         let weight = 1.0 / self.noise;
         let prediction = self.model.predict(self.curve, &branch, &p, &self.free, weight);
         let mut evaluation = self.sum(prediction);

@@ -162,7 +162,7 @@ fn lay(objective: &Objective<'_>, mut p: Parameters) -> Option<Start> {
     let mut best: Option<Start> = None;
     // the branch of one shell serves until the force scale has moved by half
     for _ in 0..2 {
-        let branch = objective.model.branch(objective.curve, &p, &[]).ok()?;
+        let (branch, _) = objective.model.branch(objective.curve, &p, &[]).ok()?;
         let mut own = objective.clone();
         own.free = keys.to_vec();
         own.priors.clear();
