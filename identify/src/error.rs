@@ -88,3 +88,182 @@ pub enum FitError {
     #[error(transparent)]
     Model(ModelError),
 }
+
+/// Why a file is no curve.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DataError {
+    /// A format that is not read.
+    #[error("{file}: {why}; {remedy}")]
+    Format {
+        /// The file.
+        file: String,
+        /// What it is.
+        why: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// Bytes that are no text.
+    #[error("{file}, line {line}: not UTF-8 text; save the curve as UTF-8")]
+    NotText {
+        /// The file.
+        file: String,
+        /// The line.
+        line: usize,
+    },
+    /// Nothing in it.
+    #[error("{file}: no samples; expected a line of column names and a line for each sample")]
+    Empty {
+        /// The file.
+        file: String,
+    },
+    /// A `.tab` without its header.
+    #[error("{file}: no header; the last comment of a .tab names the columns, apart by tabs")]
+    NoHeader {
+        /// The file.
+        file: String,
+    },
+    /// Metadata that are no JSON.
+    #[error("{file}: the metadata are not JSON: {why}")]
+    Metadata {
+        /// The file.
+        file: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// A table that cannot be taken apart.
+    #[error("{file}: {why}")]
+    Table {
+        /// The file.
+        file: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// A column that is not there.
+    #[error("{file}: {key}: no column \"{wanted}\"; the columns are: {found}. Name it with --set {key}=NAME")]
+    NoColumn {
+        /// The file.
+        file: String,
+        /// Key that would name it.
+        key: &'static str,
+        /// What was looked for.
+        wanted: String,
+        /// What is there.
+        found: String,
+    },
+    /// Several columns with one name.
+    #[error("{file}: {key}: several columns are called \"{name}\"; name one in full with --set {key}=NAME")]
+    ManyColumns {
+        /// The file.
+        file: String,
+        /// Key that would tell.
+        key: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A column without a unit.
+    #[error("{file}: {key}: the column \"{column}\" states no unit; give one of {allowed} with --set {key}=UNIT")]
+    NoUnit {
+        /// The file.
+        file: String,
+        /// Key that would tell.
+        key: &'static str,
+        /// The column.
+        column: String,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// A unit of something else.
+    #[error("{file}: {key} = {unit}: must be one of {allowed}")]
+    Unit {
+        /// The file.
+        file: String,
+        /// Key that would tell.
+        key: &'static str,
+        /// The unit.
+        unit: String,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// Volts.
+    #[error(
+        "{file}: the column \"{column}\" is in volts; a force needs the sensitivity of the deflection and \
+         the spring constant: convert it in the instrument's program or with afmformats"
+    )]
+    Volts {
+        /// The file.
+        file: String,
+        /// The column.
+        column: String,
+    },
+    /// A field that is no number.
+    #[error("{file}, line {line}: {column} = \"{text}\": must be a finite number; remove the line, or see data.decimal")]
+    Number {
+        /// The file.
+        file: String,
+        /// The line.
+        line: usize,
+        /// The column.
+        column: String,
+        /// What stands there.
+        text: String,
+    },
+    /// A segment that is none.
+    #[error("{file}, line {line}: segment = \"{text}\": must be approach or retract (or extend, False, 0; True, 1)")]
+    Segment {
+        /// The file.
+        file: String,
+        /// The line.
+        line: usize,
+        /// What stands there.
+        text: String,
+    },
+    /// Heights that go the other way.
+    #[error(
+        "{file}: the height goes from {from:.4e} m to {to:.4e} m on {direction}; it must fall on approach: if \
+         the file counts the other way, --set data.height=rises"
+    )]
+    Order {
+        /// The file.
+        file: String,
+        /// Which segment.
+        direction: &'static str,
+        /// First height.
+        from: f64,
+        /// Last height.
+        to: f64,
+    },
+    /// Heights that go to and fro.
+    #[error("{file}: the heights of the {direction} go to and fro; give the samples in the order of time")]
+    Unsorted {
+        /// The file.
+        file: String,
+        /// Which segment.
+        direction: &'static str,
+    },
+    /// A force that falls in contact.
+    #[error(
+        "{file}: the force falls from {far:.3e} N far away to {deep:.3e} N at the least height; it must be \
+         positive in compression: if the file has the other sign, --set data.force_sign=-1"
+    )]
+    Sign {
+        /// The file.
+        file: String,
+        /// Median far away, N.
+        far: f64,
+        /// Median at the least height, N.
+        deep: f64,
+    },
+    /// Commas that may be decimal.
+    #[error("{file}: there are commas in numbers; say --set data.decimal=comma, or remove them")]
+    DecimalComma {
+        /// The file.
+        file: String,
+    },
+    /// Commas that are both.
+    #[error("{file}: a decimal comma needs another separator; say --set data.separator=semicolon or tab")]
+    CommaTwice {
+        /// The file.
+        file: String,
+    },
+}

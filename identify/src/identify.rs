@@ -109,7 +109,7 @@ fn follow(fitted: &Fitted<'_>, known: &Linear, wanted: &[Quantity]) -> Vec<Profi
     let p = coarse.parameters(&fitted.best.x);
     coarse.model.effort.elements = elements(&p, COARSE, 1.0);
     coarse.model.effort.force_error = 0.1 * COARSE_ERROR * coarse.noise;
-    let limits = descent::Limits { evaluations: 8, tolerance: 1e-3 };
+    let limits = descent::Limits { evaluations: 10, tolerance: 1e-3, damping: descent::BOLD };
     let Some(minimum) = descent::descend(&coarse, &fitted.best.x, None, limits) else {
         return Vec::new();
     };
@@ -157,7 +157,7 @@ fn report(
         .map(|d| describe(Quantity::Derived(d)))
         .collect();
     let (rows, jumps, pull_off) = samples(curve, fitted, &p);
-    let findings = Findings { setup, fitted, known, reach, parameters: &parameters, parabola };
+    let findings = Findings { setup, fitted, known, reach, parameters: &parameters };
     let mut warnings = remarks(&findings, &rows);
     if *profiles == Profiles::None && !parabola {
         warnings.push(crate::record::Warning {

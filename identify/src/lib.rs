@@ -13,6 +13,7 @@ pub mod record;
 mod remarks;
 pub mod uncertainty;
 
-pub use error::{FitError, ModelError};
+pub use data::{Curve, Layout};
+pub use error::{DataError, FitError, ModelError};
 pub use identify::{Identification, Profiles, identify};
 pub use parameters::{Key, LawName, Parameters};

@@ -24,8 +24,6 @@ pub(crate) struct Findings<'a> {
     pub(crate) reach: Reach,
     /// The parameters as they are reported.
     pub(crate) parameters: &'a [Estimate],
-    /// Whether the covariance of the moduli is to be trusted.
-    pub(crate) parabola: bool,
 }
 
 /// All remarks on a fit.

@@ -1,5 +1,11 @@
 //! Measured curves: samples by segment, in SI units, and the noise of their force.
 
+pub mod read;
+mod table;
+
+pub use read::read;
+pub use table::Layout;
+
 use serde::{Deserialize, Serialize};
 
 /// Which way the plates go.

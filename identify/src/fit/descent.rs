@@ -11,6 +11,8 @@ pub struct Limits {
     /// Decrease of the cost, per step, below which it has converged; a tenth of a standard deviation moves
     /// it by 0.01.
     pub tolerance: f64,
+    /// First damping, relative to a unit diagonal.
+    pub damping: f64,
 }
 
 /// A combination of the coordinates that keeps its value: `a · x = c`.
@@ -35,8 +37,11 @@ pub struct Minimum {
     pub evaluations: usize,
 }
 
-/// First damping, relative to the diagonal of the normal matrix.
-const FIRST_DAMPING: f64 = 1e-3;
+/// Damping from a start that is only a guess.
+pub const CAREFUL: f64 = 1e-3;
+/// Damping near a minimum. Directions that the data hardly fix have eigenvalues of 1e-6 of the largest: a
+/// step that is damped more gains nothing along them, and says nothing about having arrived.
+pub const BOLD: f64 = 1e-9;
 /// Damping beyond which no step is worth trying.
 const LAST_DAMPING: f64 = 1e7;
 /// Longest step of a logarithm: a factor of 2.7 in one step.
@@ -53,7 +58,9 @@ pub fn descend(
     objective.clamp(&mut x);
     let mut at = objective.evaluate(&x).ok()?;
     let mut evaluations = 1;
-    let mut damping = FIRST_DAMPING;
+    let mut damping = limits.damping;
+    // an undamped step failed: what damped ones gain must do
+    let mut refused = false;
     let mut converged = false;
     while evaluations < limits.evaluations && damping < LAST_DAMPING {
         let Some(step) = step(objective, &x, &at, held, damping) else { break };
@@ -70,9 +77,12 @@ pub fn descend(
                 let settled = gain < limits.tolerance && !towards;
                 (x, at) = (next, tried);
                 damping = (damping * 0.1).max(1e-9);
-                if settled {
+                if settled && (refused || damping <= 10.0 * BOLD) {
                     converged = true;
                     break;
+                }
+                if settled {
+                    damping = BOLD;
                 }
             }
             Some(tried) if tried.cost - at.cost < limits.tolerance && damping > 1.0 => {
@@ -80,7 +90,10 @@ pub fn descend(
                 converged = true;
                 break;
             }
-            _ => damping = (damping * 8.0).max(1e-4),
+            _ => {
+                refused = true;
+                damping = (damping * 8.0).max(1e-6);
+            }
         }
     }
     Some(Minimum { x, at, converged, evaluations })

@@ -13,7 +13,7 @@ use crate::error::FitError;
 use crate::lever::LeverBranch;
 use crate::model::Model;
 use crate::parameters::{Key, LawName, Parameters};
-use descent::{Limits, Minimum, descend};
+use descent::{BOLD, CAREFUL, Limits, Minimum, descend};
 use nalgebra::DVector;
 use objective::{Objective, Prior};
 use starts::{Look, grid, look};
@@ -277,14 +277,14 @@ fn polish(full: &mut Objective<'_>, x: &DVector<f64>) -> Result<Polished, FitErr
     let mut evaluations = 0;
     full.model.effort.elements = elements(&full.parameters(&x), COARSE, 1.0);
     full.model.effort.force_error = COARSE_ERROR * full.noise;
-    if let Some(found) = descend(full, &x, None, Limits { evaluations: 25, tolerance: 1e-2 }) {
+    if let Some(found) = descend(full, &x, None, Limits { evaluations: 25, tolerance: 1e-2, damping: CAREFUL }) {
         evaluations += found.evaluations;
         leave_out_jumps(full, &found);
         x = found.x;
     }
     full.model.effort.force_error = FINE_ERROR * full.noise;
     full.model.effort.elements = elements(&full.parameters(&x), FINE, 2.0);
-    let limits = Limits { evaluations: 40, tolerance: 1e-4 };
+    let limits = Limits { evaluations: 40, tolerance: 1e-4, damping: BOLD };
     for last in [false, true] {
         let Some(best) = descend(full, &x, None, limits) else { return Err(FitError::NoStart) };
         evaluations += best.evaluations;
@@ -310,7 +310,7 @@ const SECOND: usize = 24;
 /// Descends on a coarse mesh and the thinned curve.
 fn coarse(thin: &mut Objective<'_>, x: &DVector<f64>, evaluations: usize) -> Option<Minimum> {
     thin.model.effort.elements = elements(&thin.parameters(x), COARSE, 1.0);
-    descend(thin, x, None, Limits { evaluations, tolerance: 2e-2 })
+    descend(thin, x, None, Limits { evaluations, tolerance: 2e-2, damping: CAREFUL })
 }
 
 /// Leaves out the samples beside jumps, and those beyond the end of a stretch: there the model's slope is

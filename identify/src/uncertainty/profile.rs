@@ -4,7 +4,7 @@
 //! combination has moved by a factor of [`FAR`]; then the interval is open.
 
 use super::Quantity;
-use crate::fit::descent::{Held, Limits, Minimum, descend};
+use crate::fit::descent::{BOLD, Held, Limits, Minimum, descend};
 use crate::fit::objective::Objective;
 use nalgebra::DVector;
 
@@ -13,7 +13,7 @@ pub const FAR: f64 = 30.0;
 /// Most points on each side.
 const POINTS: usize = 9;
 /// Evaluations for each of them.
-const LIMITS: Limits = Limits { evaluations: 9, tolerance: 0.02 };
+const LIMITS: Limits = Limits { evaluations: 12, tolerance: 0.01, damping: BOLD };
 /// Growth of the cost that ends a side: beyond 1.96².
 const ENOUGH: f64 = 4.5;
 
@@ -55,6 +55,11 @@ pub fn profile(
     let along = quantity.along(&objective.free)?;
     let centre = along.dot(&minimum.x);
     let logarithmic = quantity.is_logarithmic();
+    // along the ridge of the parabola: x moves by C a/(aᵀ C a) with the combination
+    let ridge = minimum.at.normal.clone().lu().solve(&along).and_then(|ridge| {
+        let width = along.dot(&ridge);
+        (width > 0.0 && width.is_finite()).then(|| ridge / width)
+    });
     let sd = if sd.is_finite() && sd > 0.0 { sd } else { 0.3 };
     let sd = if logarithmic { sd.clamp(1e-5, 0.5) } else { sd };
     let mut points = vec![ProfilePoint { offset: 0.0, growth: 0.0 }];
@@ -63,7 +68,6 @@ pub fn profile(
         let mut x = minimum.x.clone();
         let mut offset = 0.0;
         let mut step = sd;
-        let mut lowest = 0.0_f64;
         for _ in 0..POINTS {
             let next = offset + sign * step;
             if logarithmic && next.abs() > FAR.ln() {
@@ -71,10 +75,10 @@ pub fn profile(
             }
             let held = Held { along: along.clone(), value: centre + next };
             // along the ridge as far as the last points tell
-            let guess = if offset == 0.0 {
-                x.clone()
-            } else {
-                &minimum.x + (&x - &minimum.x) * (next / offset)
+            let guess = match &ridge {
+                _ if offset != 0.0 => &minimum.x + (&x - &minimum.x) * (next / offset),
+                Some(ridge) => &minimum.x + ridge * next,
+                None => x.clone(),
             };
             let found = descend(objective, &guess, Some(&held), LIMITS)
                 .or_else(|| descend(objective, &x, Some(&held), LIMITS));
@@ -104,7 +108,6 @@ pub fn profile(
             let aim = if root < 0.9 { 1.05 } else { 2.15 };
             let reach = (aim / root).clamp(1.2, 3.0) * offset.abs() - offset.abs();
             step = reach.max(0.3 * sd);
-            lowest = lowest.max(growth);
         }
     }
     points.sort_by(|a, b| a.offset.total_cmp(&b.offset));

@@ -1,0 +1,115 @@
+//! Files of curves: CSV, and the `.tab` of afmformats.
+
+use super::Curve;
+use super::table::{Layout, Rows, curve};
+use crate::error::DataError;
+use serde_json::Value;
+
+/// Largest file that is read, bytes.
+pub const LARGEST: u64 = 256 << 20;
+
+/// A curve from the content of a file; its name says the format.
+///
+/// # Errors
+/// Names the file and line, column or key, what was found and what to do.
+pub fn read(name: &str, bytes: &[u8], layout: &Layout) -> Result<Curve, DataError> {
+    let file = name.to_owned();
+    let extension = name.rsplit_once('.').map(|(_, e)| e.to_lowercase()).unwrap_or_default();
+    match extension.as_str() {
+        "csv" | "txt" | "tsv" | "dat" | "tab" => {}
+        "jpk-force" | "jpk-force-map" | "jpk-qi-data" => {
+            return Err(DataError::Format {
+                file,
+                why: "JPK archives are not read here".to_owned(),
+                remedy: "convert it with the Python package afmformats: \
+                         afmformats.load_data(path)[0].export_data(\"curve.tab\")",
+            });
+        }
+        other => {
+            return Err(DataError::Format {
+                file,
+                why: format!("the format \".{other}\" is not known"),
+                remedy: "give a .csv or a .tab; afmformats writes .tab from most instruments' files",
+            });
+        }
+    }
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let line = 1 + bytes[..error.valid_up_to()].iter().filter(|b| **b == b'\n').count();
+        DataError::NotText { file: file.clone(), line }
+    })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if extension == "tab" { tab(name, text, layout) } else { csv(name, text, layout) }
+}
+
+/// The layout of afmformats: comments with JSON between `BEGIN METADATA` and `END METADATA`, the last
+/// comment being the header; columns apart by tabs, SI units.
+fn tab(name: &str, text: &str, layout: &Layout) -> Result<Curve, DataError> {
+    let (mut inside, mut json, mut header) = (false, String::new(), None);
+    let mut rows = Vec::new();
+    for (at, line) in text.lines().enumerate() {
+        if let Some(comment) = line.strip_prefix('#') {
+            let comment = comment.strip_prefix(' ').unwrap_or(comment);
+            match comment.trim() {
+                "BEGIN METADATA" => inside = true,
+                "END METADATA" => inside = false,
+                _ if inside => json.push_str(comment),
+                "" => {}
+                _ => header = Some(comment.to_owned()),
+            }
+        } else if !line.trim().is_empty() {
+            rows.push((at + 1, line.split('\t').map(str::to_owned).collect()));
+        }
+    }
+    let file = || name.to_owned();
+    let Some(header) = header else { return Err(DataError::NoHeader { file: file() }) };
+    let headers: Vec<String> = header.split('\t').map(str::to_owned).collect();
+    let rows = Rows { file: name, headers, rows, si: true, comma: false };
+    let mut curve = curve(&rows, layout)?;
+    if !json.is_empty() {
+        let metadata: Value = serde_json::from_str(&json)
+            .map_err(|error| DataError::Metadata { file: file(), why: error.to_string() })?;
+        curve.spring_constant = metadata.get("spring constant").and_then(Value::as_f64);
+    }
+    Ok(curve)
+}
+
+/// A table with one line of headers; lines that start with `#` are left out.
+fn csv(name: &str, text: &str, layout: &Layout) -> Result<Curve, DataError> {
+    let mut lines = text.lines().enumerate().filter(|(_, l)| !l.starts_with('#'));
+    let Some((first, header)) = lines.find(|(_, l)| !l.trim().is_empty()) else {
+        return Err(DataError::Empty { file: name.to_owned() });
+    };
+    let separator = match layout.separator {
+        Some(separator) => separator,
+        // a tab or semicolon in the header is no part of a name
+        None => ['\t', ';', ','].into_iter().find(|c| header.contains(*c)).unwrap_or(','),
+    };
+    let body = || text.lines().skip(first + 1).filter(|l| !l.starts_with('#'));
+    let comma = match layout.decimal_comma {
+        Some(comma) => comma,
+        None if separator == ',' => false,
+        // "1,5" cannot be two columns here, but might be 15 with a mark between thousands
+        None if body().any(|l| l.contains(',')) => {
+            return Err(DataError::DecimalComma { file: name.to_owned() });
+        }
+        None => false,
+    };
+    if comma && separator == ',' {
+        return Err(DataError::CommaTwice { file: name.to_owned() });
+    }
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(u8::try_from(separator).unwrap_or(b','))
+        .comment(Some(b'#'))
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let bad = |error: csv::Error| DataError::Table { file: name.to_owned(), why: error.to_string() };
+    let headers: Vec<String> = reader.headers().map_err(bad)?.iter().map(str::to_owned).collect();
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(bad)?;
+        let line = record.position().map_or(0, |p| p.line() as usize);
+        rows.push((line, record.iter().map(str::to_owned).collect()));
+    }
+    curve(&Rows { file: name, headers, rows, si: false, comma }, layout)
+}

@@ -1,0 +1,303 @@
+//! Tables of text: columns by name with their units, numbers with a decimal point or comma.
+
+use super::{Curve, Direction, Segment};
+use crate::error::DataError;
+
+/// What a reader is told about a file; what it is not told must stand in the file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Layout {
+    /// Name of the column of forces.
+    pub force_column: Option<String>,
+    /// Name of the column of piezo heights.
+    pub height_column: Option<String>,
+    /// Name of the column that says the segment.
+    pub segment_column: Option<String>,
+    /// Unit of the forces.
+    pub force_unit: Option<String>,
+    /// Unit of the heights.
+    pub height_unit: Option<String>,
+    /// Whether numbers have a decimal comma.
+    pub decimal_comma: Option<bool>,
+    /// What stands between columns.
+    pub separator: Option<char>,
+    /// −1 where attraction is positive in the file.
+    pub force_sign: Option<f64>,
+    /// Whether the height rises on approach in the file.
+    pub height_rises: Option<bool>,
+}
+
+/// What of a column's name says that it is the force, in the order in which they are preferred.
+const FORCE: [&str; 2] = ["force", "kraft"];
+/// The same of the height of the piezo; a measured height beside it is another quantity.
+const HEIGHT: [&str; 4] = ["height_piezo", "height (piezo)", "piezo", "height"];
+/// The same of the segment.
+const SEGMENT: [&str; 2] = ["segment", "direction"];
+
+/// Units of force, in newtons.
+const FORCES: [(&str, f64); 5] =
+    [("N", 1.0), ("mN", 1e-3), ("uN", 1e-6), ("nN", 1e-9), ("pN", 1e-12)];
+/// Units of length, in metres.
+const LENGTHS: [(&str, f64); 5] =
+    [("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9), ("pm", 1e-12)];
+
+/// A column's name without the unit at its end: `force [nN]`, `force (nN)`, `force_nN`, `force / nN`.
+fn split(header: &str) -> (String, Option<String>) {
+    let header = header.trim().trim_matches('"').trim();
+    let plain = |unit: &str| unit.replace(['\u{b5}', '\u{3bc}'], "u").trim().to_owned();
+    let known = |unit: &str| {
+        let unit = plain(unit);
+        FORCES.iter().chain(&LENGTHS).any(|(name, _)| *name == unit) || unit == "V"
+    };
+    for (open, close) in [('[', "]"), ('(', ")")] {
+        if let Some((name, rest)) = header.rsplit_once(open)
+            && let Some(unit) = rest.strip_suffix(close)
+            && known(unit)
+        {
+            return (name.trim().to_lowercase(), Some(plain(unit)));
+        }
+    }
+    for between in ["/", "_", " "] {
+        if let Some((name, unit)) = header.rsplit_once(between)
+            && known(unit)
+        {
+            return (name.trim().to_lowercase(), Some(plain(unit)));
+        }
+    }
+    (header.to_lowercase(), None)
+}
+
+/// A column that was found.
+struct Column {
+    at: usize,
+    header: String,
+    unit: Option<String>,
+}
+
+fn find(
+    file: &str,
+    headers: &[String],
+    told: Option<&String>,
+    names: &[&str],
+    key: &'static str,
+) -> Result<Option<Column>, DataError> {
+    let column = |at: usize| Column {
+        at,
+        header: headers[at].trim().to_owned(),
+        unit: split(&headers[at]).1,
+    };
+    if let Some(told) = told {
+        let wanted = told.trim().to_lowercase();
+        let same = |h: &String| h.trim().to_lowercase() == wanted || split(h).0 == wanted;
+        return match headers.iter().position(same) {
+            Some(at) => Ok(Some(column(at))),
+            None => Err(DataError::NoColumn {
+                file: file.to_owned(),
+                key,
+                wanted: told.clone(),
+                found: headers.join(", "),
+            }),
+        };
+    }
+    for name in names {
+        let found: Vec<usize> =
+            (0..headers.len()).filter(|&at| split(&headers[at]).0 == *name).collect();
+        match found.as_slice() {
+            [] => {}
+            [at] => return Ok(Some(column(*at))),
+            _ => {
+                return Err(DataError::ManyColumns {
+                    file: file.to_owned(),
+                    key,
+                    name: (*name).to_owned(),
+                });
+            }
+        }
+    }
+    Ok(None)
+}
+
+fn factor(
+    file: &str,
+    column: &Column,
+    told: Option<&String>,
+    units: &[(&str, f64)],
+    key: &'static str,
+    si: bool,
+) -> Result<f64, DataError> {
+    let allowed = || units.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+    let stated = told.map(|u| u.replace(['\u{b5}', '\u{3bc}'], "u").trim().to_owned());
+    let unit = match stated.or_else(|| column.unit.clone()) {
+        Some(unit) => unit,
+        None if si => units[0].0.to_owned(),
+        None => {
+            return Err(DataError::NoUnit {
+                file: file.to_owned(),
+                key,
+                column: column.header.clone(),
+                allowed: allowed(),
+            });
+        }
+    };
+    if unit == "V" {
+        return Err(DataError::Volts { file: file.to_owned(), column: column.header.clone() });
+    }
+    units.iter().find(|(name, _)| *name == unit).map(|(_, factor)| *factor).ok_or_else(|| {
+        DataError::Unit { file: file.to_owned(), key, unit: unit.clone(), allowed: allowed() }
+    })
+}
+
+/// Rows of a table: line number in the file, and its fields.
+pub(super) struct Rows<'a> {
+    pub(super) file: &'a str,
+    pub(super) headers: Vec<String>,
+    pub(super) rows: Vec<(usize, Vec<String>)>,
+    /// Whether units are SI where none is stated: the format says so.
+    pub(super) si: bool,
+    pub(super) comma: bool,
+}
+
+/// A curve from a table.
+pub(super) fn curve(rows: &Rows<'_>, layout: &Layout) -> Result<Curve, DataError> {
+    let file = rows.file;
+    let headers = &rows.headers;
+    let missing = |key: &'static str, names: &[&str]| DataError::NoColumn {
+        file: file.to_owned(),
+        key,
+        wanted: names.join(" or "),
+        found: headers.join(", "),
+    };
+    let force = find(file, headers, layout.force_column.as_ref(), &FORCE, "data.force_column")?
+        .ok_or_else(|| missing("data.force_column", &FORCE))?;
+    let height = find(file, headers, layout.height_column.as_ref(), &HEIGHT, "data.height_column")?
+        .ok_or_else(|| missing("data.height_column", &HEIGHT))?;
+    let segment =
+        find(file, headers, layout.segment_column.as_ref(), &SEGMENT, "data.segment_column")?;
+    let force_unit = layout.force_unit.as_ref();
+    let height_unit = layout.height_unit.as_ref();
+    let si = rows.si;
+    let to_newton = factor(file, &force, force_unit, &FORCES, "data.force_unit", si)?;
+    let to_metre = factor(file, &height, height_unit, &LENGTHS, "data.height_unit", si)?;
+    let sign = layout.force_sign.unwrap_or(1.0);
+    let turn = if layout.height_rises == Some(true) { -1.0 } else { 1.0 };
+    let mut curve = Curve { name: file.to_owned(), ..Curve::default() };
+    for (line, fields) in &rows.rows {
+        let number = |column: &Column| -> Result<f64, DataError> {
+            let text = fields.get(column.at).map_or("", |f| f.trim());
+            let dotted = if rows.comma { text.replace(',', ".") } else { text.to_owned() };
+            match dotted.parse::<f64>() {
+                Ok(value) if value.is_finite() => Ok(value),
+                _ => Err(DataError::Number {
+                    file: file.to_owned(),
+                    line: *line,
+                    column: column.header.clone(),
+                    text: text.chars().take(40).collect(),
+                }),
+            }
+        };
+        let direction = match &segment {
+            None => None,
+            Some(column) => Some(direction(file, *line, column, fields)?),
+        };
+        let (h, f) = (turn * to_metre * number(&height)?, sign * to_newton * number(&force)?);
+        let direction = direction.unwrap_or(Direction::Approach);
+        match curve.segments.last_mut().filter(|s| s.direction == direction) {
+            Some(last) => {
+                last.height.push(h);
+                last.force.push(f);
+            }
+            None => curve.segments.push(Segment { direction, height: vec![h], force: vec![f] }),
+        }
+    }
+    if segment.is_none() {
+        divide(&mut curve);
+    }
+    check(curve)
+}
+
+fn direction(
+    file: &str,
+    line: usize,
+    column: &Column,
+    fields: &[String],
+) -> Result<Direction, DataError> {
+    let text = fields.get(column.at).map_or("", |f| f.trim());
+    match text.to_lowercase().as_str() {
+        "approach" | "extend" | "trace" | "false" | "0" => Ok(Direction::Approach),
+        "retract" | "retrace" | "true" | "1" => Ok(Direction::Retract),
+        _ => Err(DataError::Segment { file: file.to_owned(), line, text: text.to_owned() }),
+    }
+}
+
+/// Without a column of segments: the approach ends at the least height.
+fn divide(curve: &mut Curve) {
+    let Some(whole) = curve.segments.pop() else { return };
+    let lowest = (0..whole.height.len())
+        .min_by(|&a, &b| whole.height[a].total_cmp(&whole.height[b]))
+        .unwrap_or(0);
+    let cut = lowest + 1;
+    let note = "no column says the segment; the approach is taken to end at the least height";
+    curve.notes.push(note.to_owned());
+    let part = |direction, range: std::ops::Range<usize>| Segment {
+        direction,
+        height: whole.height[range.clone()].to_vec(),
+        force: whole.force[range].to_vec(),
+    };
+    for part in
+        [part(Direction::Approach, 0..cut), part(Direction::Retract, cut..whole.height.len())]
+    {
+        if part.height.len() > 2 {
+            curve.segments.push(part);
+        }
+    }
+}
+
+/// Checks that heights fall on approach and rise on retract, and that forces are of contact.
+fn check(mut curve: Curve) -> Result<Curve, DataError> {
+    let file = curve.name.clone();
+    if curve.is_empty() {
+        return Err(DataError::Empty { file });
+    }
+    for segment in &curve.segments {
+        let (h, n) = (&segment.height, segment.height.len());
+        if n < 3 {
+            continue;
+        }
+        let falls = h[n - 1] < h[0];
+        if falls != (segment.direction == Direction::Approach) {
+            let direction = segment.direction.name();
+            return Err(DataError::Order { file, direction, from: h[0], to: h[n - 1] });
+        }
+        // a piezo creeps and shakes; what goes back over a tenth of the way is no segment
+        let way = (h[n - 1] - h[0]).abs();
+        let (mut turned, mut extreme) = (0.0_f64, h[0]);
+        for x in h {
+            let back = if falls { x - extreme } else { extreme - x };
+            turned = turned.max(back);
+            extreme = if falls { extreme.min(*x) } else { extreme.max(*x) };
+        }
+        if turned > 0.1 * way {
+            return Err(DataError::Unsorted { file, direction: segment.direction.name() });
+        }
+    }
+    // the deepest samples press, or the sign is another
+    let main = curve
+        .segments
+        .iter()
+        .find(|s| s.direction == Direction::Approach)
+        .or_else(|| curve.segments.first());
+    if let Some(main) = main {
+        let falls = main.direction == Direction::Approach;
+        let n = main.force.len();
+        let (far, deep) =
+            if falls { (0..n / 10 + 1, n - n / 10 - 1..n) } else { (n - n / 10 - 1..n, 0..n / 10 + 1) };
+        let median = |range: std::ops::Range<usize>| {
+            super::median(&mut main.force[range].to_vec()).unwrap_or(0.0)
+        };
+        let (far, deep) = (median(far), median(deep));
+        if deep < far {
+            return Err(DataError::Sign { file, far, deep });
+        }
+    }
+    curve.name = file;
+    Ok(curve)
+}
