@@ -35,6 +35,8 @@ pub(crate) enum Command {
     /// Follow special points in two parameters; write the curves, the special points on them and a
     /// picture
     Map(MapArguments),
+    /// Fit measured force curves: moduli, thickness, adhesion, contact point, and how well they are known
+    Fit(FitArguments),
     /// Compute figures of the reference paper, and compare its claims with them
     Figure(FigureArguments),
     /// Trace many cases, over grids and lists of parameters, on all cores
@@ -157,6 +159,62 @@ pub(crate) struct MapArguments {
     /// What to do with the results.
     #[command(flatten)]
     pub(crate) output: OutputArguments,
+}
+
+/// Which curves, what is known of them, and what to do with their fits.
+#[derive(Debug, Args)]
+pub(crate) struct FitArguments {
+    /// Measured curves: .csv or afmformats' .tab
+    #[arg(value_name = "CURVE", required = true)]
+    pub(crate) curves: Vec<PathBuf>,
+    /// What the laboratory knows: [instrument], [shell], [physical], [data]
+    #[arg(long, value_name = "LAB.toml")]
+    pub(crate) known: Option<PathBuf>,
+    /// Replace a known value, e.g. --set instrument.spring_constant="0.08 N/m"; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Keep a quantity at its known value; may be repeated
+    #[arg(long, value_name = "KEY")]
+    pub(crate) fix: Vec<String>,
+    /// Look for a quantity that is kept otherwise; may be repeated
+    #[arg(long, value_name = "KEY")]
+    pub(crate) free: Vec<String>,
+    /// What is known of a quantity, with its error; may be repeated
+    #[arg(long, value_name = "KEY=VALUE:SD")]
+    pub(crate) prior: Vec<String>,
+    /// Law of the membrane: hooke, mooney-rivlin, skalak, or all [default: shell.law]
+    #[arg(long, value_name = "NAME|all")]
+    pub(crate) law: Option<String>,
+    /// Segments that are fitted
+    #[arg(long, value_enum, default_value_t = SegmentsWanted::Both)]
+    pub(crate) segments: SegmentsWanted,
+    /// Piezo heights that are fitted, e.g. --range "7.5 um:9 um"
+    #[arg(long, value_name = "A:B", allow_hyphen_values = true)]
+    pub(crate) range: Option<String>,
+    /// Profile likelihoods to follow, apart by commas, or none
+    /// [default: those of the moduli where the covariance cannot be trusted]
+    #[arg(long, value_name = "KEYS|none")]
+    pub(crate) profile: Option<String>,
+    /// Let outliers count less (soft-L1)
+    #[arg(long)]
+    pub(crate) robust: bool,
+    /// Number of threads for several curves, at most 1024 [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) jobs: Option<u16>,
+    /// What to do with the results.
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
+}
+
+/// Which segments of a curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum SegmentsWanted {
+    /// The approach
+    Approach,
+    /// The retract
+    Retract,
+    /// Both
+    Both,
 }
 
 /// Which figures, and what to do with them.

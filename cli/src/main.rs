@@ -9,6 +9,7 @@ mod closest;
 mod commands;
 mod exit;
 mod figures;
+mod fit;
 mod output;
 mod phase;
 mod pictures;

@@ -52,7 +52,9 @@ pub enum FitError {
         fewest: usize,
     },
     /// Too few samples in contact.
-    #[error("force: {found} samples in contact; at least {fewest} are needed: measure farther or denser")]
+    #[error(
+        "force: {found} samples in contact; at least {fewest} are needed: measure farther or denser"
+    )]
     FewInContact {
         /// How many there are.
         found: usize,
@@ -140,7 +142,9 @@ pub enum DataError {
         why: String,
     },
     /// A column that is not there.
-    #[error("{file}: {key}: no column \"{wanted}\"; the columns are: {found}. Name it with --set {key}=NAME")]
+    #[error(
+        "{file}: {key}: no column \"{wanted}\"; the columns are: {found}. Name it with --set {key}=NAME"
+    )]
     NoColumn {
         /// The file.
         file: String,
@@ -152,7 +156,9 @@ pub enum DataError {
         found: String,
     },
     /// Several columns with one name.
-    #[error("{file}: {key}: several columns are called \"{name}\"; name one in full with --set {key}=NAME")]
+    #[error(
+        "{file}: {key}: several columns are called \"{name}\"; name one in full with --set {key}=NAME"
+    )]
     ManyColumns {
         /// The file.
         file: String,
@@ -162,7 +168,9 @@ pub enum DataError {
         name: String,
     },
     /// A column without a unit.
-    #[error("{file}: {key}: the column \"{column}\" states no unit; give one of {allowed} with --set {key}=UNIT")]
+    #[error(
+        "{file}: {key}: the column \"{column}\" states no unit; give one of {allowed} with --set {key}=UNIT"
+    )]
     NoUnit {
         /// The file.
         file: String,
@@ -197,7 +205,9 @@ pub enum DataError {
         column: String,
     },
     /// A field that is no number.
-    #[error("{file}, line {line}: {column} = \"{text}\": must be a finite number; remove the line, or see data.decimal")]
+    #[error(
+        "{file}, line {line}: {column} = \"{text}\": must be a finite number; remove the line, or see data.decimal"
+    )]
     Number {
         /// The file.
         file: String,
@@ -209,7 +219,9 @@ pub enum DataError {
         text: String,
     },
     /// A segment that is none.
-    #[error("{file}, line {line}: segment = \"{text}\": must be approach or retract (or extend, False, 0; True, 1)")]
+    #[error(
+        "{file}, line {line}: segment = \"{text}\": must be approach or retract (or extend, False, 0; True, 1)"
+    )]
     Segment {
         /// The file.
         file: String,
@@ -234,7 +246,9 @@ pub enum DataError {
         to: f64,
     },
     /// Heights that go to and fro.
-    #[error("{file}: the heights of the {direction} go to and fro; give the samples in the order of time")]
+    #[error(
+        "{file}: the heights of the {direction} go to and fro; give the samples in the order of time"
+    )]
     Unsorted {
         /// The file.
         file: String,
@@ -261,7 +275,9 @@ pub enum DataError {
         file: String,
     },
     /// Commas that are both.
-    #[error("{file}: a decimal comma needs another separator; say --set data.separator=semicolon or tab")]
+    #[error(
+        "{file}: a decimal comma needs another separator; say --set data.separator=semicolon or tab"
+    )]
     CommaTwice {
         /// The file.
         file: String,

@@ -86,12 +86,7 @@ fn is_parabola(fitted: &Fitted<'_>, known: &Linear, reach: Reach) -> bool {
         && known.chi2_dof <= 2.0
 }
 
-fn wanted(
-    profiles: &Profiles,
-    fitted: &Fitted<'_>,
-    known: &Linear,
-    reach: Reach,
-) -> Vec<Quantity> {
+fn wanted(profiles: &Profiles, fitted: &Fitted<'_>, known: &Linear, reach: Reach) -> Vec<Quantity> {
     match profiles {
         Profiles::None => Vec::new(),
         Profiles::These(these) => these.clone(),

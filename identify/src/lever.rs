@@ -206,7 +206,11 @@ impl LeverBranch {
         for _ in 0..50 {
             let (z, f, dz, df) = self.between(k, s);
             let miss = self.travel(z, f) - travel;
-            if miss > 0.0 { high = s } else { low = s }
+            if miss > 0.0 {
+                high = s
+            } else {
+                low = s
+            }
             let newton = s - miss / self.travel_slope(dz, df);
             let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
             let done = (next - s).abs() <= 1e-12 * (1.0 + s.abs());

@@ -51,9 +51,7 @@ pub fn groups_of(keys: &[Key]) -> Vec<Group> {
     let mut wanted = [false; GROUPS];
     for key in keys {
         let groups: &[Group] = match key {
-            Key::Chi => {
-                &[Group::Bending, Group::Pressure, Group::Adhesion, Group::SurfaceTension]
-            }
+            Key::Chi => &[Group::Bending, Group::Pressure, Group::Adhesion, Group::SurfaceTension],
             Key::Bending => &[Group::Bending],
             Key::Adhesion => &[Group::Adhesion],
             Key::Film => &[Group::Film],

@@ -97,10 +97,14 @@ pub(crate) fn remarks(found: &Findings<'_>, rows: &[Row]) -> Vec<Warning> {
     let outliers = rows.iter().filter(|r| r.used && r.residual.abs() > OUTLIER * noise).count();
     if outliers * 200 > rows.len() {
         let how = if setup.robust { "they count less" } else { "try --robust" };
-        say("outliers", format!("{outliers} samples lie beyond {OUTLIER} standard deviations; {how}"));
+        say(
+            "outliers",
+            format!("{outliers} samples lie beyond {OUTLIER} standard deviations; {how}"),
+        );
     }
     if fitted.look.pull_off == 0.0 && fitted.objective.free.contains(&Key::Adhesion) {
-        let text = "no attraction is seen above the noise: adhesion and film length are upper bounds";
+        let text =
+            "no attraction is seen above the noise: adhesion and film length are upper bounds";
         say("no-pull-off", text.to_owned());
     }
     if !fitted.branch_resolved {
@@ -151,7 +155,9 @@ pub(crate) fn weakest(fitted: &Fitted<'_>, known: &Linear) -> String {
     let name = |k: usize| free[at[k]].name();
     let moduli = |k: usize| matches!(free[at[k]], Key::Chi | Key::Bending);
     match second {
-        Some(second) if moduli(first) && moduli(second) && direction[first] * direction[second] < 0.0 => {
+        Some(second)
+            if moduli(first) && moduli(second) && direction[first] * direction[second] < 0.0 =>
+        {
             format!(
                 "chi and k_b, and so E and h, trade off (sd {} along that direction): sqrt(chi k_b) is \
                  known to {}",
@@ -160,7 +166,11 @@ pub(crate) fn weakest(fitted: &Fitted<'_>, known: &Linear) -> String {
             )
         }
         Some(second) if direction[second].abs() > 0.4 => {
-            let way = if direction[first] * direction[second] < 0.0 { "trade off" } else { "go together" };
+            let way = if direction[first] * direction[second] < 0.0 {
+                "trade off"
+            } else {
+                "go together"
+            };
             format!(
                 "{} and {} {way} (sd {} along that direction); sqrt(chi k_b) is known to {}",
                 name(first),

@@ -6,6 +6,7 @@ mod cycle;
 mod delivery;
 mod diagram;
 mod figure;
+mod fit;
 mod list;
 mod map;
 mod progress;
@@ -24,6 +25,7 @@ pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
     match &arguments.command {
         Command::Trace(arguments) => trace::trace(arguments),
         Command::Diagram(arguments) => diagram::diagram(arguments),
+        Command::Fit(arguments) => fit::fit(arguments),
         Command::Figure(arguments) => figure::figure(arguments),
         Command::Cycle(arguments) => cycle::cycle(arguments),
         Command::Check(arguments) => check::check(arguments),

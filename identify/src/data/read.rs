@@ -103,7 +103,8 @@ fn csv(name: &str, text: &str, layout: &Layout) -> Result<Curve, DataError> {
         .flexible(true)
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
-    let bad = |error: csv::Error| DataError::Table { file: name.to_owned(), why: error.to_string() };
+    let bad =
+        |error: csv::Error| DataError::Table { file: name.to_owned(), why: error.to_string() };
     let headers: Vec<String> = reader.headers().map_err(bad)?.iter().map(str::to_owned).collect();
     let mut rows = Vec::new();
     for record in reader.records() {

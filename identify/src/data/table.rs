@@ -288,8 +288,11 @@ fn check(mut curve: Curve) -> Result<Curve, DataError> {
     if let Some(main) = main {
         let falls = main.direction == Direction::Approach;
         let n = main.force.len();
-        let (far, deep) =
-            if falls { (0..n / 10 + 1, n - n / 10 - 1..n) } else { (n - n / 10 - 1..n, 0..n / 10 + 1) };
+        let (far, deep) = if falls {
+            (0..n / 10 + 1, n - n / 10 - 1..n)
+        } else {
+            (n - n / 10 - 1..n, 0..n / 10 + 1)
+        };
         let median = |range: std::ops::Range<usize>| {
             super::median(&mut main.force[range].to_vec()).unwrap_or(0.0)
         };

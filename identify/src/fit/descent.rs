@@ -119,8 +119,11 @@ fn step(
     let mut matrix = DMatrix::zeros(m + extra, m + extra);
     let mut rhs = DVector::zeros(m + extra);
     // scaled to a unit diagonal
-    let scale: Vec<f64> =
-        active.iter().map(|&k| at.normal[(k, k)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();
+    let scale: Vec<f64> = active
+        .iter()
+        .map(|&k| at.normal[(k, k)].sqrt())
+        .map(|s| if s > 0.0 { s } else { 1.0 })
+        .collect();
     for (i, &a) in active.iter().enumerate() {
         for (j, &b) in active.iter().enumerate() {
             matrix[(i, j)] = at.normal[(a, b)] / (scale[i] * scale[j]);

@@ -277,7 +277,9 @@ fn polish(full: &mut Objective<'_>, x: &DVector<f64>) -> Result<Polished, FitErr
     let mut evaluations = 0;
     full.model.effort.elements = elements(&full.parameters(&x), COARSE, 1.0);
     full.model.effort.force_error = COARSE_ERROR * full.noise;
-    if let Some(found) = descend(full, &x, None, Limits { evaluations: 25, tolerance: 1e-2, damping: CAREFUL }) {
+    if let Some(found) =
+        descend(full, &x, None, Limits { evaluations: 25, tolerance: 1e-2, damping: CAREFUL })
+    {
         evaluations += found.evaluations;
         leave_out_jumps(full, &found);
         x = found.x;

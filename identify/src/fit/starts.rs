@@ -49,8 +49,7 @@ pub fn look(curve: &Curve, noise: f64, lever: f64) -> Option<Look> {
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let count = points.iter().take_while(|p| p.0 < FAR * span).count().max(4).min(points.len());
     let (offset, tilt) = line(&points[..count]);
-    let level: Vec<(f64, f64)> =
-        points.iter().map(|(x, f)| (*x, f - offset - tilt * x)).collect();
+    let level: Vec<(f64, f64)> = points.iter().map(|(x, f)| (*x, f - offset - tilt * x)).collect();
     let largest = level.iter().fold(0.0_f64, |m, p| m.max(p.1));
     let threshold = (5.0 * noise).max(0.01 * largest);
     // from the deepest sample outwards: the last one that is clearly in compression

@@ -168,9 +168,8 @@ pub fn linear(fitted: &Fitted<'_>, spring_constant_sd: f64) -> Result<Linear, Fi
     let m = inner.len();
     let scale: Vec<f64> =
         inner.iter().map(|&k| best.at.normal[(k, k)].sqrt().max(f64::MIN_POSITIVE)).collect();
-    let scaled = DMatrix::from_fn(m, m, |i, j| {
-        best.at.normal[(inner[i], inner[j])] / (scale[i] * scale[j])
-    });
+    let scaled =
+        DMatrix::from_fn(m, m, |i, j| best.at.normal[(inner[i], inner[j])] / (scale[i] * scale[j]));
     let eigen = SymmetricEigen::new(scaled);
     let largest = eigen.eigenvalues.iter().fold(0.0_f64, |m, x| m.max(*x));
     let least = eigen.eigenvalues.iter().fold(f64::INFINITY, |m, x| m.min(*x));

@@ -1,0 +1,232 @@
+//! `arclen fit`: from measured curves to the shell's properties.
+
+use super::delivery::Made;
+use crate::arguments::{FitArguments, SegmentsWanted};
+use crate::case::Override;
+use crate::case::name::plain_name;
+use crate::exit::Exit;
+use crate::fit::files::{FIT, FitsRow, NAMES, files, fit_json, fits_csv, summary};
+use crate::fit::lab::{self, Lab, Wishes};
+use crate::fit::{Failure, Laws, Outcome, fit_file, profiles};
+use crate::terminal;
+use identify::data::Direction;
+use identify::{LawName, Profiles};
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+use serde_json::json;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+const FITS: &str = "fits.csv";
+const BATCH: &str = "fits.json";
+
+/// Fit the curves.
+pub(super) fn fit(arguments: &FitArguments) -> Exit {
+    let prepared = prepare(arguments);
+    let (lab, laws, profiles) = match prepared {
+        Ok(prepared) => prepared,
+        Err(message) => return refuse(&message),
+    };
+    let wishes = wishes(arguments);
+    match arguments.curves.as_slice() {
+        [one] => single(arguments, one, &lab, laws, wishes, &profiles),
+        _ => batch(arguments, &lab, laws, wishes, &profiles),
+    }
+}
+
+fn refuse(message: &dyn std::fmt::Display) -> Exit {
+    terminal::error(message);
+    Exit::BadInput
+}
+
+fn wishes(arguments: &FitArguments) -> Wishes<'_> {
+    Wishes {
+        fix: &arguments.fix,
+        free: &arguments.free,
+        prior: &arguments.prior,
+        only: match arguments.segments {
+            SegmentsWanted::Both => None,
+            SegmentsWanted::Approach => Some(Direction::Approach),
+            SegmentsWanted::Retract => Some(Direction::Retract),
+        },
+        range: arguments.range.as_deref(),
+        robust: arguments.robust,
+    }
+}
+
+fn prepare(arguments: &FitArguments) -> Result<(Lab, Laws, Profiles), String> {
+    let overrides: Vec<Override> = arguments.set.iter().map(|text| Override::set(text)).collect();
+    let lab =
+        lab::load(arguments.known.as_deref(), &overrides).map_err(|error| lab::told(&error))?;
+    let laws = match arguments.law.as_deref() {
+        None => Laws::Known,
+        Some("all") => Laws::All,
+        Some(name) => match LawName::of(name) {
+            Some(law) => Laws::One(law),
+            None => {
+                let known = LawName::ALL.map(LawName::name).join(", ");
+                return Err(format!("--law {name}: must be one of {known}, all"));
+            }
+        },
+    };
+    Ok((lab, laws, profiles(arguments.profile.as_deref())?))
+}
+
+fn inputs(arguments: &FitArguments) -> Vec<PathBuf> {
+    arguments.curves.iter().chain(&arguments.known).cloned().collect()
+}
+
+fn stem(path: &std::path::Path) -> String {
+    plain_name(&path.file_stem().unwrap_or_default().to_string_lossy())
+}
+
+fn single(
+    arguments: &FitArguments,
+    path: &PathBuf,
+    lab: &Lab,
+    laws: Laws,
+    wishes: Wishes<'_>,
+    profiles: &Profiles,
+) -> Exit {
+    let inputs = inputs(arguments);
+    let folder = match arguments.output.folder(&stem(path), &NAMES, &inputs) {
+        Ok(folder) => folder,
+        Err(exit) => return exit,
+    };
+    let outcome = match fit_file(path, lab, laws, wishes, profiles) {
+        Ok(outcome) => outcome,
+        Err(Failure::Input(message)) => return refuse(&message),
+        Err(Failure::NotFound(message)) => {
+            terminal::error(&message);
+            let text = json!({ "curve": path.display().to_string(), "error": message });
+            let made = Made::json::<serde_json::Error>(FIT, Ok(format!("{text:#}\n")));
+            let words = |_: Option<&std::path::Path>| String::new();
+            return arguments.output.deliver(folder.as_ref(), made, &inputs, words, false);
+        }
+    };
+    let mut made = Made::json(FIT, fit_json(&outcome));
+    if folder.is_some() {
+        made.files(files(&outcome, !arguments.output.no_pictures));
+    }
+    let complete = outcome.best.report.is_good();
+    arguments.output.deliver(
+        folder.as_ref(),
+        made,
+        &inputs,
+        |written| {
+            let mut text = summary(&outcome);
+            if let Some(path) = written {
+                text.push_str(&format!("written to {}\n", path.display()));
+            }
+            text
+        },
+        complete,
+    )
+}
+
+fn batch(
+    arguments: &FitArguments,
+    lab: &Lab,
+    laws: Laws,
+    wishes: Wishes<'_>,
+    profiles: &Profiles,
+) -> Exit {
+    let inputs = inputs(arguments);
+    let folder = match arguments.output.folder("fits", &[BATCH, FITS], &inputs) {
+        Ok(folder) => folder,
+        Err(exit) => return exit,
+    };
+    let bar = (!arguments.output.quiet && terminal::watched())
+        .then(|| ProgressBar::new(arguments.curves.len() as u64));
+    let one = |path: &PathBuf| {
+        let outcome = fit_file(path, lab, laws, wishes, profiles);
+        if let Some(bar) = &bar {
+            bar.inc(1);
+        }
+        outcome
+    };
+    let all = || arguments.curves.par_iter().map(one).collect::<Vec<_>>();
+    let jobs = arguments.jobs.map_or(0, usize::from);
+    let outcomes: Vec<Result<Outcome, Failure>> =
+        match rayon::ThreadPoolBuilder::new().num_threads(jobs).build() {
+            Ok(pool) => pool.install(all),
+            Err(error) => return refuse(&format!("--jobs {jobs}: {error}")),
+        };
+    if let Some(bar) = &bar {
+        bar.finish_and_clear();
+    }
+    if outcomes.iter().all(|o| matches!(o, Err(Failure::Input(_)))) {
+        for outcome in outcomes {
+            if let Err(failure) = outcome {
+                terminal::error(&failure.message());
+            }
+        }
+        return Exit::BadInput;
+    }
+    let (mut rows, mut listed, mut contents) = (Vec::new(), Vec::new(), Vec::new());
+    let mut names: BTreeSet<String> = BTreeSet::new();
+    let mut complete = true;
+    for (path, outcome) in arguments.curves.iter().zip(&outcomes) {
+        let curve = path.display().to_string();
+        match outcome {
+            Ok(outcome) => {
+                let name = unique(&mut names, stem(path));
+                let report = &outcome.best.report;
+                complete &= report.is_good();
+                rows.push(FitsRow::of(report, &name));
+                listed.push(json!({ "curve": curve, "folder": name, "good": report.is_good() }));
+                let json = fit_json(outcome).map(|text| (FIT.to_owned(), text.into_bytes()));
+                let own = files(outcome, !arguments.output.no_pictures);
+                match (json, own) {
+                    (Ok(json), Ok(own)) => contents.extend(
+                        std::iter::once(json)
+                            .chain(own)
+                            .map(|(file, bytes)| (format!("{name}/{file}"), bytes)),
+                    ),
+                    (json, own) => {
+                        let json = json.err().map(|e| e.to_string());
+                        let own = own.err().map(|e| e.to_string());
+                        terminal::error(&json.or(own).unwrap_or_default());
+                    }
+                }
+            }
+            Err(failure) => {
+                complete = false;
+                terminal::error(&failure.message());
+                rows.push(FitsRow::failed(&curve, failure.message()));
+                listed.push(json!({ "curve": curve, "error": failure.message() }));
+            }
+        }
+    }
+    let text = json!({ "fits": listed });
+    let mut made = Made::json::<serde_json::Error>(BATCH, Ok(format!("{text:#}\n")));
+    if folder.is_some() {
+        made.attempt(FITS, fits_csv(&rows));
+        for (name, bytes) in contents {
+            made.file(name, bytes);
+        }
+    }
+    let fitted = outcomes.iter().filter(|o| o.is_ok()).count();
+    let total = outcomes.len();
+    arguments.output.deliver(
+        folder.as_ref(),
+        made,
+        &inputs,
+        |written| {
+            let place = written.map_or(String::new(), |p| format!(", written to {}", p.display()));
+            format!("{fitted} of {total} curves fitted{place}\n")
+        },
+        complete,
+    )
+}
+
+/// A name that is not taken yet.
+fn unique(taken: &mut BTreeSet<String>, name: String) -> String {
+    let mut candidate = name.clone();
+    let mut k = 2;
+    while !taken.insert(candidate.clone()) {
+        candidate = format!("{name}-{k}");
+        k += 1;
+    }
+    candidate
+}

@@ -1,0 +1,126 @@
+//! A fit as pictures: data with the model on top, residuals, profiles.
+
+use super::Outcome;
+use crate::pictures::{Curve, Ink, Panel, PanelLine, Pen, Sheet};
+use identify::record::{Report, Row};
+
+/// Growth of the cost at the end of a 95 % interval.
+const LEVEL: f64 = 3.841_459;
+
+/// Force and residuals over the piezo's travel, in nN and nm.
+pub(super) fn fit(outcome: &Outcome) -> String {
+    let (report, rows) = (&outcome.best.report, &outcome.best.rows);
+    let farthest = rows.iter().map(|row| row.piezo).fold(f64::NEG_INFINITY, f64::max);
+    let level = |row: &Row| report.baseline.offset + report.baseline.tilt * (farthest - row.piezo);
+    let x = |row: &Row| 1e9 * (report.contact - row.piezo);
+    let curve = |segment: &str, y: &dyn Fn(&Row) -> f64| {
+        let mut curve = Curve::default();
+        for row in rows.iter().filter(|row| row.segment == segment) {
+            curve.x.push(x(row));
+            curve.y.push(y(row));
+        }
+        curve
+    };
+    let line = |label: &str, ink, pen, curve| PanelLine {
+        label: label.to_owned(),
+        ink,
+        pen,
+        right: false,
+        curve,
+    };
+    let measured = |row: &Row| 1e9 * (row.force - level(row));
+    let model = |row: &Row| 1e9 * (row.model - level(row));
+    let residual = |row: &Row| if row.used { 1e9 * row.residual } else { f64::NAN };
+    let (mut force, mut rest) = (Vec::new(), Vec::new());
+    for (k, segment) in ["approach", "retract"].into_iter().enumerate() {
+        if rows.iter().any(|row| row.segment == segment) {
+            let ink = Ink::Place(1 + k);
+            force.insert(k, line(segment, Ink::Faint, Pen::Thin, curve(segment, &measured)));
+            force.push(line(
+                &format!("model, {segment}"),
+                ink.clone(),
+                Pen::Data,
+                curve(segment, &model),
+            ));
+            rest.push(line(segment, ink, Pen::Thin, curve(segment, &residual)));
+        }
+    }
+    for one in force.iter_mut().take(2).filter(|one| one.pen == Pen::Thin) {
+        one.label = String::new();
+    }
+    if let Some(first) = force.first_mut() {
+        first.label = "measured".to_owned();
+    }
+    let axis = "travel of the piezo beyond the contact point [nm]".to_owned();
+    let panels = vec![
+        Panel {
+            title: "Force".to_owned(),
+            x: axis.clone(),
+            y: "force [nN]".to_owned(),
+            lines: force,
+            ..Panel::default()
+        },
+        Panel {
+            title: "Residuals".to_owned(),
+            x: axis,
+            y: "measured minus model [nN]".to_owned(),
+            lines: rest,
+            ..Panel::default()
+        },
+    ];
+    let subtitle = format!(
+        "{}; chi2/dof {:.3}; noise {:.3} nN; {}",
+        report.law,
+        report.quality.chi2_dof,
+        1e9 * report.quality.noise,
+        report.weakest_direction
+    );
+    Sheet { title: name(report), subtitle, panels }.svg()
+}
+
+fn name(report: &Report) -> String {
+    let name = report.curve.rsplit(['/', '\\']).next().unwrap_or_default();
+    format!("Fit of {name}")
+}
+
+/// Growth of the cost over each quantity whose profile was followed.
+pub(super) fn profiles(report: &Report) -> Option<String> {
+    let panels: Vec<Panel> = report
+        .profiles
+        .iter()
+        .map(|profile| {
+            let unit = report.estimate(&profile.key).map_or("", |e| e.unit);
+            let growth = Curve {
+                x: profile.values.clone(),
+                y: profile.points.iter().map(|p| p.growth).collect(),
+                ..Curve::default()
+            };
+            let ends = [profile.values.first(), profile.values.last()];
+            let level = Curve {
+                x: ends.into_iter().flatten().copied().collect(),
+                y: vec![LEVEL; 2],
+                ..Curve::default()
+            };
+            let line = |label: &str, ink, pen, curve| PanelLine {
+                label: label.to_owned(),
+                ink,
+                pen,
+                right: false,
+                curve,
+            };
+            Panel {
+                title: profile.key.clone(),
+                x: format!("{} [{unit}]", profile.key),
+                y: "growth of chi2".to_owned(),
+                lines: vec![
+                    line("profile", Ink::Place(1), Pen::Data, growth),
+                    line("95 %", Ink::Faint, Pen::Law, level),
+                ],
+                ..Panel::default()
+            }
+        })
+        .collect();
+    (!panels.is_empty()).then(|| {
+        Sheet { title: name(report), subtitle: "profile likelihood".to_owned(), panels }.svg()
+    })
+}
