@@ -114,15 +114,27 @@ pub(crate) fn remarks(found: &Findings<'_>, rows: &[Row]) -> Vec<Warning> {
     if fitted.objective.curve.segments.len() < 2 {
         say("one-segment", "the curve has one segment only".to_owned());
     }
-    let along = Quantity::Derived(Derived::ForceScale).along(&fitted.objective.free);
-    if let Some((own, lever)) = along.map(|along| known.sd(&along))
-        && lever > 2.0 * own
-    {
+    // what the lever's error dominates
+    let limited: Vec<&str> = parameters
+        .iter()
+        .filter(|e| match (e.sd, e.sd_statistical) {
+            (Some(all), Some(own)) => {
+                Key::of(&e.key).is_some_and(Key::is_logarithmic)
+                    && all > 3.0 * own
+                    && all > 0.03 * e.value
+            }
+            _ => false,
+        })
+        .map(|e| e.key.as_str())
+        .collect();
+    if !limited.is_empty() {
         say(
             "spring-constant",
             format!(
-                "the lever's stiffness (sd {:.1} %) limits sqrt(chi k_b); calibrate it better",
-                100.0 * known.lever_sd
+                "the lever's stiffness (sd {:.1} %) is what limits {}; calibrate it better, and say so in \
+                 spring_constant_sd",
+                100.0 * known.lever_sd,
+                limited.join(", ")
             ),
         );
     }

@@ -11,6 +11,10 @@ mod readme {
     struct ShellContact;
     #[doc = include_str!("../../problems/README.md")]
     struct Problems;
+    #[doc = include_str!("../../identify/README.md")]
+    struct Identify;
+    #[doc = include_str!("../../docs/fit.md")]
+    struct Fit;
     #[doc = include_str!("../../cli/README.md")]
     struct Cli;
 }

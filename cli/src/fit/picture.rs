@@ -52,7 +52,23 @@ pub(super) fn fit(outcome: &Outcome) -> String {
         first.label = "measured".to_owned();
     }
     let axis = "travel of the piezo beyond the contact point [nm]".to_owned();
-    let panels = vec![
+    // attraction is small beside what presses: once more, by itself
+    let pull = -1e9 * report.pull_off.modelled.min(report.pull_off.measured);
+    let near = (pull > 0.0).then(|| {
+        let reach = rows.iter().filter(|row| measured(row) < 3.0 * pull).map(x);
+        let deepest = reach.fold(f64::NEG_INFINITY, f64::max);
+        let first = rows.iter().map(x).fold(f64::INFINITY, f64::min);
+        Panel {
+            title: "Near contact".to_owned(),
+            x: axis.clone(),
+            y: "force [nN]".to_owned(),
+            lines: force.clone(),
+            x_range: (deepest > first).then_some([first, deepest]),
+            y_range: Some([-1.3 * pull, 3.0 * pull]),
+            ..Panel::default()
+        }
+    });
+    let mut panels = vec![
         Panel {
             title: "Force".to_owned(),
             x: axis.clone(),
@@ -68,6 +84,7 @@ pub(super) fn fit(outcome: &Outcome) -> String {
             ..Panel::default()
         },
     ];
+    panels.extend(near);
     let subtitle = format!(
         "{}; chi2/dof {:.3}; noise {:.3} nN; {}",
         report.law,

@@ -1,0 +1,114 @@
+//! Files of curves: what is read, what is asked for, what is refused, each with its words.
+
+use identify::data::{Direction, Layout, read};
+
+const TAB: &str = include_str!("data/open-1-hard-knee.tab");
+
+fn refused(name: &str, text: &str, layout: &Layout) -> String {
+    read(name, text.as_bytes(), layout).unwrap_err().to_string()
+}
+
+fn ramp(header: &str, separator: &str, row: impl Fn(f64, f64) -> String) -> String {
+    let mut text = format!("{header}\n");
+    for (name, back) in [("approach", false), ("retract", true)] {
+        for i in 0..20 {
+            let i = if back { 19 - i } else { i };
+            let (h, f) = (2000.0 - 10.0 * f64::from(i), f64::from(i));
+            text.push_str(&format!("{name}{separator}{}\n", row(h, f)));
+        }
+    }
+    text
+}
+
+#[test]
+fn tab_of_afmformats() {
+    let curve = read("a.tab", TAB.as_bytes(), &Layout::default()).unwrap();
+    assert_eq!(curve.spring_constant, Some(1.2));
+    assert_eq!(curve.segments[0].direction, Direction::Approach);
+    assert_eq!(curve.segments[1].direction, Direction::Retract);
+    // the numbers as they stand, to the last bit
+    assert_eq!(curve.segments[0].force[0], -3.2281651e-09);
+    assert_eq!(curve.segments[0].height[0], 8.60801744e-06);
+}
+
+#[test]
+fn columns_by_name_with_their_units() {
+    for header in [
+        "segment,height [nm],force [nN]",
+        "segment,height (nm),force (nN)",
+        "segment,height_nm,force_nN",
+        "segment,height_piezo_nm,Force / nN",
+    ] {
+        let text = ramp(header, ",", |h, f| format!("{h},{f}"));
+        let curve = read("a.csv", text.as_bytes(), &Layout::default()).unwrap();
+        assert_eq!(curve.segments.len(), 2, "{header}");
+        assert!((curve.segments[0].height[1] - 1.99e-6).abs() < 1e-18, "{header}");
+        assert!((curve.segments[0].force[1] - 1e-9).abs() < 1e-21, "{header}");
+    }
+}
+
+#[test]
+fn without_a_unit_one_is_asked_for() {
+    let text = ramp("segment,height,force [nN]", ",", |h, f| format!("{h},{f}"));
+    let message = refused("a.csv", &text, &Layout::default());
+    assert!(message.contains("a.csv: data.height_unit") && message.contains("nm"), "{message}");
+    let told = Layout { height_unit: Some("nm".into()), ..Layout::default() };
+    assert!(read("a.csv", text.as_bytes(), &told).is_ok());
+    let wrong = Layout { height_unit: Some("inch".into()), ..Layout::default() };
+    assert!(refused("a.csv", &text, &wrong).contains("data.height_unit = inch"));
+}
+
+#[test]
+fn a_decimal_comma_is_told() {
+    let comma = |x: f64| format!("{x:.2}").replace('.', ",");
+    let text =
+        ramp("segment;height [nm];force [nN]", ";", |h, f| format!("{};{}", comma(h), comma(f)));
+    let message = refused("a.csv", &text, &Layout::default());
+    assert!(message.contains("data.decimal=comma"), "{message}");
+    let told = Layout { decimal_comma: Some(true), ..Layout::default() };
+    let curve = read("a.csv", text.as_bytes(), &told).unwrap();
+    assert!((curve.segments[0].height[1] - 1.99e-6).abs() < 1e-18);
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_its_place() {
+    let none = Layout::default();
+    let good = ramp("segment,height_nm,force_nN", ",", |h, f| format!("{h},{f}"));
+    for (name, text, words) in [
+        ("a.csv", good.replace("1950,5\n", "1950,nan\n"), "line 7: force_nN = \"nan\""),
+        ("a.csv", good.replace("force_nN", "kraft_nM"), "data.force_column"),
+        ("a.csv", good.replace("force_nN", "force_V"), "volts"),
+        ("a.csv", good.replacen("approach", "sideways", 1), "line 2: segment = \"sideways\""),
+        (
+            "a.csv",
+            good.replace("approach", "x").replace("retract", "approach").replace("x,", "retract,"),
+            "data.height=rises",
+        ),
+        ("a.csv", "segment,height_nm,force_nN\n".to_owned(), "no samples"),
+        ("a.tab", "1\t2\n".to_owned(), "no header"),
+        ("a.jpk-force", good.clone(), "JPK archives are not read"),
+        ("a.ibw", good.clone(), "format \".ibw\" is not known"),
+    ] {
+        let message = refused(name, &text, &none);
+        assert!(message.contains(words) && message.contains(name), "{words}: {message}");
+    }
+    let flipped = ramp("segment,height_nm,force_nN", ",", |h, f| format!("{h},{}", -f));
+    assert!(refused("a.csv", &flipped, &none).contains("data.force_sign=-1"));
+    let told = Layout { force_sign: Some(-1.0), ..Layout::default() };
+    assert!(read("a.csv", flipped.as_bytes(), &told).is_ok());
+    let shaken = ramp("segment,height_nm,force_nN", ",", |h, f| {
+        format!("{},{f}", if f % 3.0 == 0.0 { h + 90.0 } else { h })
+    });
+    assert!(refused("a.csv", &shaken, &none).contains("to and fro"));
+}
+
+#[test]
+fn without_segments_the_approach_ends_at_the_least_height() {
+    let text: String = ramp("segment,height_nm,force_nN", ",", |h, f| format!("{h},{f}"))
+        .lines()
+        .map(|l| format!("{}\n", l.split_once(',').unwrap().1))
+        .collect();
+    let curve = read("a.csv", text.as_bytes(), &Layout::default()).unwrap();
+    assert_eq!(curve.segments.len(), 2);
+    assert!(curve.notes[0].contains("no column says the segment"));
+}
