@@ -165,7 +165,7 @@ pub(crate) struct MapArguments {
 #[derive(Debug, Args)]
 pub(crate) struct FitArguments {
     /// Measured curves: .csv or afmformats' .tab
-    #[arg(value_name = "CURVE", required = true)]
+    #[arg(value_name = "CURVE", required_unless_present = "plan")]
     pub(crate) curves: Vec<PathBuf>,
     /// What the laboratory knows: [instrument], [shell], [physical], [data]
     #[arg(long, value_name = "LAB.toml")]
@@ -198,6 +198,10 @@ pub(crate) struct FitArguments {
     /// Let outliers count less (soft-L1)
     #[arg(long)]
     pub(crate) robust: bool,
+    /// Instead of a fit: what a measurement of this shell would identify, from the Fisher information;
+    /// --known gives lever and noise (instrument.noise), the case's path the range
+    #[arg(long, value_name = "CASE.toml", conflicts_with = "curves")]
+    pub(crate) plan: Option<PathBuf>,
     /// Number of threads for several curves, at most 1024 [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) jobs: Option<u16>,

@@ -16,6 +16,8 @@ pub(crate) enum Dimension {
     Tension,
     /// Newton metres: the bending modulus of a shell.
     Moment,
+    /// Newtons.
+    Force,
 }
 
 /// How a unit relates to the SI unit of its dimension.
@@ -27,7 +29,7 @@ enum Factor {
     Times(f64),
 }
 
-use Dimension::{Length, Moment, Pressure, Tension};
+use Dimension::{Force, Length, Moment, Pressure, Tension};
 use Factor::{Ten, Times};
 
 /// Every unit that is understood: the normal spelling, its dimension, its factor.
@@ -52,6 +54,10 @@ const UNITS: &[(&str, Dimension, Factor)] = &[
     ("N m", Moment, Ten(0)),
     ("J", Moment, Ten(0)),
     ("aJ", Moment, Ten(-18)),
+    ("N", Force, Ten(0)),
+    ("uN", Force, Ten(-6)),
+    ("nN", Force, Ten(-9)),
+    ("pN", Force, Ten(-12)),
 ];
 
 impl Dimension {
@@ -62,6 +68,7 @@ impl Dimension {
             Pressure => "2.1 GPa",
             Tension => "0.05 N/m",
             Moment => "3e-16 N m",
+            Force => "50 pN",
         }
     }
 
@@ -80,6 +87,7 @@ impl fmt::Display for Dimension {
             Pressure => "pressure",
             Tension => "tension",
             Moment => "bending moment",
+            Force => "force",
         })
     }
 }

@@ -5,15 +5,16 @@ pub mod branch;
 pub mod data;
 pub mod error;
 pub mod fit;
-pub mod identify;
+mod identification;
 pub mod lever;
 pub mod model;
 pub mod parameters;
+pub mod plan;
 pub mod record;
 mod remarks;
 pub mod uncertainty;
 
 pub use data::{Curve, Layout};
 pub use error::{DataError, FitError, ModelError};
-pub use identify::{Identification, Profiles, identify};
+pub use identification::{Identification, PROFILED, Profiles, identify};
 pub use parameters::{Key, LawName, Parameters};

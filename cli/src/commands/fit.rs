@@ -2,13 +2,14 @@
 
 use super::delivery::Made;
 use crate::arguments::{FitArguments, SegmentsWanted};
-use crate::case::Override;
 use crate::case::name::plain_name;
+use crate::case::{Override, load};
 use crate::exit::Exit;
 use crate::fit::files::{FIT, FitsRow, NAMES, files, fit_json, fits_csv, summary};
 use crate::fit::lab::{self, Lab, Wishes};
+use crate::fit::plan::{PLAN, planned};
 use crate::fit::{Failure, Laws, Outcome, fit_file, profiles};
-use crate::terminal;
+use crate::{run, terminal};
 use identify::data::Direction;
 use identify::{LawName, Profiles};
 use indicatif::ProgressBar;
@@ -28,9 +29,33 @@ pub(super) fn fit(arguments: &FitArguments) -> Exit {
         Err(message) => return refuse(&message),
     };
     let wishes = wishes(arguments);
+    if let Some(case) = &arguments.plan {
+        return plan(arguments, case, &lab, wishes);
+    }
     match arguments.curves.as_slice() {
         [one] => single(arguments, one, &lab, laws, wishes, &profiles),
         _ => batch(arguments, &lab, laws, wishes, &profiles),
+    }
+}
+
+/// What a measurement of a case would identify.
+fn plan(arguments: &FitArguments, case: &PathBuf, lab: &Lab, wishes: Wishes<'_>) -> Exit {
+    let loaded = match load(case, &[], &run::catalogue()) {
+        Ok(loaded) => loaded,
+        Err(error) => return refuse(&error),
+    };
+    let inputs: Vec<PathBuf> = std::iter::once(case).chain(&arguments.known).cloned().collect();
+    let folder = match arguments.output.folder(&loaded.case.name, &[PLAN], &inputs) {
+        Ok(folder) => folder,
+        Err(exit) => return exit,
+    };
+    match planned(&loaded.case, lab, wishes) {
+        Err(message) => refuse(&message),
+        Ok(plan) => {
+            let made = Made::json(PLAN, plan.json());
+            let words = |_: Option<&std::path::Path>| plan.summary();
+            arguments.output.deliver(folder.as_ref(), made, &inputs, words, true)
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use identify::{Key, LawName, Parameters};
 use std::path::Path;
 
 const TABLES: [&str; 4] = ["instrument", "shell", "physical", "data"];
-const INSTRUMENT: &[&str] = &["spring_constant", "spring_constant_sd", "contacts"];
+const INSTRUMENT: &[&str] = &["spring_constant", "spring_constant_sd", "contacts", "noise"];
 const SHELL: &[&str] = &["law", "poisson", "poisson_sd", "b", "b_sd"];
 const DATA: &[&str] = &[
     "force_column",
@@ -53,6 +53,8 @@ pub(crate) struct Lab {
     pub(crate) spring_constant_sd: Option<f64>,
     /// Poles that deform.
     pub(crate) contacts: u8,
+    /// Standard deviation of the force's noise, N: of a planned measurement.
+    pub(crate) noise: Option<f64>,
     /// How the files of curves are laid out.
     pub(crate) layout: Layout,
 }
@@ -116,6 +118,7 @@ fn read(reader: &Reader, root: Section<'_>) -> Option<Lab> {
         law: None,
         spring_constant_sd: None,
         contacts: 2,
+        noise: None,
         layout: Layout::default(),
     };
     let instrument = table("instrument", INSTRUMENT);
@@ -125,6 +128,8 @@ fn read(reader: &Reader, root: Section<'_>) -> Option<Lab> {
     }
     lab.spring_constant_sd = spring_constant_sd(reader, instrument, lab.base[Key::SpringConstant]);
     lab.contacts = reader.count(instrument, "contacts", 1, 2).unwrap_or(2) as u8;
+    let noise = reader.quantity(instrument, "noise", Dimension::Force, POSITIVE);
+    lab.noise = noise.map(|noise| noise.si);
     let shell = table("shell", SHELL);
     let names = LawName::ALL.map(LawName::name);
     lab.law = reader.word(shell, "law", &names).and_then(LawName::of);

@@ -3,6 +3,7 @@
 pub(crate) mod files;
 pub(crate) mod lab;
 mod picture;
+pub(crate) mod plan;
 
 use identify::data::read;
 use identify::data::read::LARGEST;
