@@ -83,6 +83,21 @@ pub enum FitError {
         /// Radius, m.
         radius: f64,
     },
+    /// Forces that the lever cannot have shown.
+    #[error(
+        "force: the largest, {force:.3e} N, bends a lever of {lever:.3e} N/m by {deflection:.3e} m, while the piezo \
+         moves by {travel:.3e} m; one of the units is wrong (data.force_unit, instrument.spring_constant)"
+    )]
+    Deflection {
+        /// Largest force, N.
+        force: f64,
+        /// Stiffness of the lever, N/m.
+        lever: f64,
+        /// Its deflection, m.
+        deflection: f64,
+        /// Travel of the piezo, m.
+        travel: f64,
+    },
     /// No start leads anywhere.
     #[error("no shell of the grid of starts has a branch that spans the data")]
     NoStart,

@@ -94,9 +94,13 @@ pub(crate) fn remarks(found: &Findings<'_>, rows: &[Row]) -> Vec<Warning> {
         );
     }
     let noise = fitted.objective.noise;
-    let outliers = rows.iter().filter(|r| r.used && r.residual.abs() > OUTLIER * noise).count();
+    let far = |r: &&Row| r.residual.abs() > OUTLIER * noise;
+    let outliers = rows.iter().filter(far).filter(|r| r.used || setup.robust).count();
     if outliers * 200 > rows.len() {
-        let how = if setup.robust { "they count less" } else { "try --robust" };
+        let how = match setup.robust {
+            true => "they count less, or not at all (fit.csv says which were used)",
+            false => "try --robust",
+        };
         say(
             "outliers",
             format!("{outliers} samples lie beyond {OUTLIER} standard deviations; {how}"),

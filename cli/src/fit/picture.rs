@@ -54,7 +54,8 @@ pub(super) fn fit(outcome: &Outcome) -> String {
     let axis = "travel of the piezo beyond the contact point [nm]".to_owned();
     // attraction is small beside what presses: once more, by itself
     let pull = -1e9 * report.pull_off.modelled.min(report.pull_off.measured);
-    let near = (pull > 0.0).then(|| {
+    let largest = rows.iter().map(measured).fold(0.0, f64::max);
+    let near = (pull > 0.0 && largest > 6.0 * pull).then(|| {
         let reach = rows.iter().filter(|row| measured(row) < 3.0 * pull).map(x);
         let deepest = reach.fold(f64::NEG_INFINITY, f64::max);
         let first = rows.iter().map(x).fold(f64::INFINITY, f64::min);

@@ -33,6 +33,9 @@ const HEIGHT: [&str; 4] = ["height_piezo", "height (piezo)", "piezo", "height"];
 /// The same of the segment.
 const SEGMENT: [&str; 2] = ["segment", "direction"];
 
+/// How much farther down than up forces go, and farthest at the least height, where the sign is another.
+const FLIPPED: f64 = 5.0;
+
 /// Units of force, in newtons.
 const FORCES: [(&str, f64); 5] =
     [("N", 1.0), ("mN", 1e-3), ("uN", 1e-6), ("nN", 1e-9), ("pN", 1e-12)];
@@ -279,25 +282,24 @@ fn check(mut curve: Curve) -> Result<Curve, DataError> {
             return Err(DataError::Unsorted { file, direction: segment.direction.name() });
         }
     }
-    // the deepest samples press, or the sign is another
+    // the deepest samples press, or the sign is another; what ends in attraction may be either
     let main = curve
         .segments
         .iter()
         .find(|s| s.direction == Direction::Approach)
         .or_else(|| curve.segments.first());
     if let Some(main) = main {
-        let falls = main.direction == Direction::Approach;
-        let n = main.force.len();
-        let (far, deep) = if falls {
-            (0..n / 10 + 1, n - n / 10 - 1..n)
-        } else {
-            (n - n / 10 - 1..n, 0..n / 10 + 1)
-        };
-        let median = |range: std::ops::Range<usize>| {
-            super::median(&mut main.force[range].to_vec()).unwrap_or(0.0)
-        };
-        let (far, deep) = (median(far), median(deep));
-        if deep < far {
+        let mut force = main.force.clone();
+        if main.direction == Direction::Retract {
+            force.reverse();
+        }
+        let tenth = force.len() / 10 + 1;
+        let far = super::median(&mut force[..tenth].to_vec()).unwrap_or(0.0);
+        let deep = super::median(&mut force[force.len() - tenth..].to_vec()).unwrap_or(0.0);
+        let highest = force.iter().fold(f64::NEG_INFINITY, |m, f| m.max(*f)) - far;
+        let lowest = far - force.iter().fold(f64::INFINITY, |m, f| m.min(*f));
+        let last = force.iter().rev().take(tenth).fold(f64::INFINITY, |m, f| m.min(*f));
+        if lowest > FLIPPED * highest && far - last >= lowest {
             return Err(DataError::Sign { file, far, deep });
         }
     }

@@ -8,7 +8,7 @@ pub mod objective;
 pub mod starts;
 
 use crate::branch::Effort;
-use crate::data::{Curve, Direction};
+use crate::data::{Curve, Direction, median};
 use crate::error::FitError;
 use crate::lever::LeverBranch;
 use crate::model::Model;
@@ -64,6 +64,12 @@ impl Setup {
 pub const FEWEST_IN_CONTACT: usize = 12;
 /// Fewest samples of baseline.
 pub const FEWEST_OF_BASELINE: usize = 8;
+/// Range of forces, in standard deviations of the noise, beyond which a curve without contact has no baseline.
+const STEEP: f64 = 50.0;
+/// Largest deflection of the lever in travels of the piezo: more than 1 is a wrong unit or calibration.
+const MOST_DEFLECTION: f64 = 1.2;
+/// Least deflection that an instrument resolves, m: a hundredth of an atom.
+const LEAST_DEFLECTION: f64 = 1e-12;
 /// Samples of the thinned curve on which starts are compared.
 const THINNED: usize = 400;
 /// Descents from the grid.
@@ -144,8 +150,22 @@ pub fn check<'a>(curve: &'a Curve, setup: &Setup) -> Result<(Objective<'a>, Look
         return Err(FitError::NoNoise);
     }
     let Some(look) = look(curve, noise, p[Key::SpringConstant]) else {
-        return Err(FitError::NoContact { fewest: FEWEST_IN_CONTACT });
+        // nothing that rises above the line through the farthest samples: flat, or steep from the start
+        let forces = || curve.segments.iter().flat_map(|s| s.force.iter().copied());
+        let range =
+            forces().fold(f64::NEG_INFINITY, f64::max) - forces().fold(f64::INFINITY, f64::min);
+        return Err(if range > STEEP * noise {
+            FitError::NoBaseline { found: 0, fewest: FEWEST_OF_BASELINE }
+        } else {
+            FitError::NoContact { fewest: FEWEST_IN_CONTACT }
+        });
     };
+    let lever = p[Key::SpringConstant];
+    let deflection = look.largest / lever;
+    let travel = curve.farthest() - curve.nearest();
+    if deflection > MOST_DEFLECTION * travel || deflection < LEAST_DEFLECTION {
+        return Err(FitError::Deflection { force: look.largest, lever, deflection, travel });
+    }
     if look.in_contact < FEWEST_IN_CONTACT {
         return Err(FitError::FewInContact { found: look.in_contact, fewest: FEWEST_IN_CONTACT });
     }
@@ -282,6 +302,9 @@ fn polish(full: &mut Objective<'_>, x: &DVector<f64>) -> Result<Polished, FitErr
     {
         evaluations += found.evaluations;
         leave_out_jumps(full, &found);
+        if full.robust {
+            leave_out_outliers(full, &found);
+        }
         x = found.x;
     }
     full.model.effort.force_error = FINE_ERROR * full.noise;
@@ -335,6 +358,35 @@ fn leave_out_jumps(objective: &mut Objective<'_>, found: &Minimum) {
         }
         first = end;
     }
+}
+
+/// Residuals beyond this many standard deviations are no measurement of the bubble.
+const OUTLIER: f64 = 6.0;
+/// Largest share of the samples that may be left out as outliers; beyond it the model is wrong.
+const MOST_OUTLIERS: f64 = 0.25;
+
+/// Leaves out outliers, once soft-L1 has led to where the others lie, and reads the noise off the others.
+fn leave_out_outliers(objective: &mut Objective<'_>, found: &Minimum) {
+    let measured: Vec<f64> =
+        objective.curve.segments.iter().flat_map(|s| s.force.iter().copied()).collect();
+    let residual: Vec<f64> = measured
+        .iter()
+        .zip(&found.at.prediction.force)
+        .map(|(measured, model)| (measured - model).abs())
+        .collect();
+    let used = |i: &usize| objective.used[*i];
+    let mut sizes: Vec<f64> = (0..residual.len()).filter(used).map(|i| residual[i]).collect();
+    // of normal numbers the median is 0.6745 standard deviations
+    let Some(spread) = median(&mut sizes).map(|m| m / 0.674_49) else { return };
+    let beyond: Vec<usize> =
+        (0..residual.len()).filter(used).filter(|&i| residual[i] > OUTLIER * spread).collect();
+    if beyond.is_empty() || beyond.len() as f64 > MOST_OUTLIERS * sizes.len() as f64 {
+        return;
+    }
+    for i in beyond {
+        objective.used[i] = false;
+    }
+    objective.noise = spread;
 }
 
 /// Minima that are neither the best nor within three standard deviations of it, but fit nearly as well:
