@@ -51,6 +51,9 @@ pub struct Stretch {
     nodes: (usize, usize),
 }
 
+/// Most stretches: a curve with more is that of a mesh that does not resolve its film.
+const MOST: usize = 32;
+
 /// A branch under a lever.
 #[derive(Debug, Clone)]
 pub struct LeverBranch {
@@ -144,9 +147,15 @@ impl LeverBranch {
                 let (z, f, ..) = self.between(k, s);
                 self.travel(z, f)
             };
+            let from = at(s.0, if start.is_some() { first - 1 } else { first });
+            let to = at(s.1, if end.is_some() { last } else { last.saturating_sub(1) });
+            // a point alone, or one that is no number, is no stretch
+            if from.partial_cmp(&to) != Some(std::cmp::Ordering::Less) || found.len() == MOST {
+                continue;
+            }
             found.push(Stretch {
-                from: at(s.0, if start.is_some() { first - 1 } else { first }),
-                to: at(s.1, if end.is_some() { last } else { last.saturating_sub(1) }),
+                from,
+                to,
                 begins_at_fold: start.is_some(),
                 ends_at_fold: end.is_some(),
                 s,

@@ -98,7 +98,7 @@ impl Model {
         let reach = f64::from(self.contacts) * p[Key::Radius];
         let needed = most + BEYOND * (most - least);
         let film = NEAREST_GAP * p[Key::Film] / p[Key::Radius];
-        let gap = (-least / reach).max(film).min(FARTHEST_GAP).max(1e-3);
+        let gap = (-least / reach).max(film).clamp(1e-3, FARTHEST_GAP);
         let (scale, lever) = (p.force_scale(), p[Key::SpringConstant]);
         let travel = |z: f64, f: f64| reach * (1.0 - z) + scale * f / lever;
         let enough = |z: f64, f: f64| travel(z, f) >= needed;

@@ -1,4 +1,5 @@
 //! How often 95 % intervals hold the truth, over noise that the tests make themselves.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
 mod common;
 

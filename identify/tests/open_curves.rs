@@ -1,4 +1,5 @@
 //! Curves that another solver made, with known truth.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
 mod common;
 

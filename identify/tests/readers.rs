@@ -1,4 +1,5 @@
 //! Files of curves: what is read, what is asked for, what is refused, each with its words.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
 use identify::data::{Direction, Layout, read};
 

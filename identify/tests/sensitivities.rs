@@ -1,4 +1,5 @@
 //! Sensitivities that need no further solve, against differences of branches that are solved anew.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
 mod common;
 

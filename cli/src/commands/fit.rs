@@ -16,7 +16,7 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde_json::json;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const FITS: &str = "fits.csv";
 const BATCH: &str = "fits.json";
@@ -53,7 +53,7 @@ fn plan(arguments: &FitArguments, case: &PathBuf, lab: &Lab, wishes: Wishes<'_>)
         Err(message) => refuse(&message),
         Ok(plan) => {
             let made = Made::json(PLAN, plan.json());
-            let words = |_: Option<&std::path::Path>| plan.summary();
+            let words = |_: Option<&Path>| plan.summary();
             arguments.output.deliver(folder.as_ref(), made, &inputs, words, true)
         }
     }
@@ -101,13 +101,13 @@ fn inputs(arguments: &FitArguments) -> Vec<PathBuf> {
     arguments.curves.iter().chain(&arguments.known).cloned().collect()
 }
 
-fn stem(path: &std::path::Path) -> String {
+fn stem(path: &Path) -> String {
     plain_name(&path.file_stem().unwrap_or_default().to_string_lossy())
 }
 
 fn single(
     arguments: &FitArguments,
-    path: &PathBuf,
+    path: &Path,
     lab: &Lab,
     laws: Laws,
     wishes: Wishes<'_>,
@@ -125,7 +125,7 @@ fn single(
             terminal::error(&message);
             let text = json!({ "curve": path.display().to_string(), "error": message });
             let made = Made::json::<serde_json::Error>(FIT, Ok(format!("{text:#}\n")));
-            let words = |_: Option<&std::path::Path>| String::new();
+            let words = |_: Option<&Path>| String::new();
             return arguments.output.deliver(folder.as_ref(), made, &inputs, words, false);
         }
     };

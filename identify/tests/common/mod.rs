@@ -1,6 +1,6 @@
 //! Curves with known truth, and noise that is the same on every machine.
 
-#![allow(dead_code, unreachable_pub)]
+#![allow(dead_code, unreachable_pub, missing_docs, clippy::unwrap_used)]
 
 use identify::data::{Curve, Direction, Layout, Segment, read};
 use identify::fit::{Setup, objective::Prior};
