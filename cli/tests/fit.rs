@@ -95,7 +95,7 @@ fn wrong_inputs_are_named_and_nothing_is_created() {
         (&["--law", "hooke"], "physical.radius: missing"),
         (&["--law", "hooke", "--prior", "radius=1.58:0.05"], "the unit is missing"),
         (&["--law", "hooke", "--free", "yuong"], "--free yuong: unknown key"),
-        (&["--law", "hooke", "--range", "1"], "--range 1"),
+        (&["--law", "hooke", "--prior", "radius=1.58 um:50 nm", "--range", "1"], "--range 1"),
         (&["--law", "hooke", "--profile", "E"], "--profile E"),
     ] {
         let output = arclen(folder.path(), &[&["fit", CURVE, "--out", "out"], more].concat());
