@@ -91,7 +91,13 @@ pub(crate) fn locate_branch_points<P: Problem>(
         let z = Extended { u: x.u.clone(), p: x.p };
         match attempt(core, &mut probe, segment, &z, k, &mut x) {
             Ok(crossed) => found = Some(vec![crossed]),
-            Err(Failure::Evaluation(error)) => refusal = Refusal::Evaluation(error),
+            // from elsewhere it may leave the domain too: where the point lies is to be known first
+            Err(Failure::Evaluation(error)) => {
+                refusal = Refusal::Evaluation(error);
+                if k == 1 {
+                    break;
+                }
+            }
             Err(Failure::Close(gap)) => {
                 refusal = Refusal::BranchesClose { gap };
                 break;

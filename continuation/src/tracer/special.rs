@@ -14,7 +14,7 @@ use crate::singular::{
 use crate::step::{Constraint, Core, Precision, Refusal, State};
 
 /// Part of the step to which a Hopf point is bracketed before Newton's method takes over, and a branch
-/// point that it did not find.
+/// point towards which it left the domain.
 const BRACKET: f64 = 1e-3;
 
 /// A located special point of a step.
@@ -198,20 +198,14 @@ impl<P: Problem> Tracer<'_, P> {
             eigenvectors: Vec::new(),
             state: one.state,
         };
-        // a simple one that is not found from the middle is bracketed on the branch, before others are
-        // tried: from there Newton's method goes a short way
-        let bracketed = kernel == 1 && !final_say;
-        let seeds = if bracketed { &SEEDS[..1] } else { &SEEDS[..] };
-        match locate_branch_points(core, a, b, h, kernel, seeds, final_say) {
+        match locate_branch_points(core, a, b, h, kernel, &SEEDS, final_say) {
             Ok(found) => located.extend(found.into_iter().map(special)),
-            Err(refusal) if bracketed && !matches!(refusal, Refusal::BranchesClose { .. }) => {
-                let near = locate(core, a, b, h, &candidate, BRACKET * h, work)
-                    .and_then(|_| locate_branch_point_near(core, (a, b), h, work, final_say));
-                match near {
-                    Ok(found) => located.push(special(found)),
-                    Err(close @ Refusal::BranchesClose { .. }) => return Err(close),
-                    Err(_) => return Err(refusal),
-                }
+            // Newton's method left the domain, as it does where thin films forbid a long way: the point
+            // is bracketed first, on the branch
+            Err(Refusal::Evaluation(_)) if kernel == 1 && !final_say => {
+                locate(core, a, b, h, &candidate, BRACKET * h, work)?;
+                let found = locate_branch_point_near(core, (a, b), h, work, final_say)?;
+                located.push(special(found));
             }
             Err(refusal) if !final_say || matches!(refusal, Refusal::BranchesClose { .. }) => {
                 return Err(refusal);
