@@ -167,7 +167,7 @@ pub(crate) struct FitArguments {
     /// Measured curves: .csv or afmformats' .tab
     #[arg(value_name = "CURVE", required_unless_present = "plan")]
     pub(crate) curves: Vec<PathBuf>,
-    /// What the laboratory knows: [instrument], [shell], [physical], [data]
+    /// What the laboratory knows: the tables instrument, shell, physical and data
     #[arg(long, value_name = "LAB.toml")]
     pub(crate) known: Option<PathBuf>,
     /// Replace a known value, e.g. --set instrument.spring_constant="0.08 N/m"; may be repeated
