@@ -3,7 +3,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-use continuation::{DenseProblem, EventKind, Problem, Settings, Stability, StopReason, Tracer};
+use continuation::{
+    Branch, DenseProblem, Event, EventKind, Problem, Settings, Shape, Stability, StopReason, Tracer,
+};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
@@ -103,6 +105,39 @@ fn the_jacobian_of_the_unloaded_dome() {
     }
 }
 
+/// The way from a special point to the end of some steps on every branch that leaves it.
+fn sides<P: Problem>(problem: &P, trunk: &Branch, event: &Event) -> Vec<Vec<f64>> {
+    let settings = Settings { max_step: Some(0.01), max_points: 6, ..Settings::default() };
+    let mut sides = Vec::new();
+    for direction in &event.crossing().unwrap().leaving {
+        for forward in [true, false] {
+            let side = Tracer::leaving(problem, trunk, event, direction, forward, settings.clone())
+                .unwrap()
+                .run(&mut |_| ControlFlow::Continue(()));
+            let (start, end) = (&side.points[0].u, &side.points.last().unwrap().u);
+            sides.push(end.iter().zip(start).map(|(end, start)| end - start).collect());
+        }
+    }
+    sides
+}
+
+/// The same displacements one corner on.
+fn turn(u: &[f64], n: usize) -> Vec<f64> {
+    let (sin, cos) = (TAU / n as f64).sin_cos();
+    let mut turned = vec![0.0; u.len()];
+    for i in 0..=n {
+        let to = if i == 0 { 0 } else { 1 + i % n };
+        let [x, y, z] = [0, 1, 2].map(|c| u[3 * i + c]);
+        turned[3 * to..3 * to + 3].copy_from_slice(&[cos * x - sin * y, sin * x + cos * y, z]);
+    }
+    turned
+}
+
+fn angle(a: &[f64], b: &[f64]) -> f64 {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    (dot(a, b) / (dot(a, a) * dot(b, b)).sqrt()).clamp(-1.0, 1.0).acos()
+}
+
 #[test]
 fn double_branch_points_of_star_domes() {
     for n in [5, 6, 7] {
@@ -129,7 +164,27 @@ fn double_branch_points_of_star_domes() {
         assert!(double.clone().count() >= 4, "{n}");
         for event in double {
             assert_eq!(event.kind, EventKind::BranchPoint);
-            assert_eq!(event.crossing().unwrap().multiplicity, 2, "{n}: {}", event.p);
+            let crossing = event.crossing().unwrap();
+            assert_eq!(crossing.multiplicity, 2, "{n}: {}", event.p);
+            assert_eq!(crossing.shape, Shape::Multiple, "{n}: {}", event.p);
+            // three lines where the mode is that of a triangle, two families of three with that of a hexagon
+            let hexagon = n == 6 && event.p.abs() < 0.0103;
+            let expected = match n {
+                6 if hexagon => 6,
+                6 => 3,
+                _ => n,
+            };
+            assert_eq!(crossing.leaving.len(), expected, "{n}: {}", event.p);
+            let sides = sides(&problem, &trunk, event);
+            let case = format!("{n}: {}", event.p);
+            assert_eq!(sides.len(), 2 * expected, "{case}");
+            for (i, one) in sides.iter().enumerate() {
+                let closest = sides[..i].iter().map(|other| angle(one, other)).fold(9.0, f64::min);
+                assert!(closest > 0.2, "{case}: two of the directions are one branch, {closest}");
+                let turned = turn(one, n);
+                let same = sides.iter().map(|other| angle(&turned, other)).fold(9.0, f64::min);
+                assert!(same < 0.02, "{case}: turned by a corner, it is no branch, {same}");
+            }
         }
         // turned over, the dome does the same under the opposite load
         let mirrored = trunk.events.iter().zip(trunk.events.iter().rev());

@@ -32,6 +32,8 @@ const APART: f64 = 0.1;
 const LARGE: f64 = 0.3;
 /// Directions of more than two modes that are looked at.
 const DIRECTIONS: usize = 6;
+/// Steps of the reduced equations' chord method, below which shrinking no more is rounding.
+const ROUNDING: f64 = 1e-8;
 /// Directions of the same branch at two amplitudes, as a part of the distance to the next one.
 const SAME: f64 = 0.1;
 
@@ -96,6 +98,7 @@ impl<P: Problem> Reduced<'_, '_, '_, P> {
         let mut largest = 0.0_f64;
         let mut tangential = f64::INFINITY;
         let mut before: Option<Vec<Ray>> = None;
+        let mut confirmed = false;
         let mut amplitude = LEAST;
         while amplitude <= MOST {
             let Ok(samples) = self.samples(amplitude) else { break };
@@ -103,21 +106,24 @@ impl<P: Problem> Reduced<'_, '_, '_, P> {
             let (signal, floor) = strength(&spectrum);
             let size = amplitude * amplitude;
             (largest, tangential) = (amplitude, signal / size);
-            before = if signal > CLEAR * floor && signal > NOTHING * size {
-                let rays = self.rays(&samples, amplitude);
-                match (before, rays) {
-                    (Some(before), Some(rays)) if alike(&before, &rays) => {
-                        if amplitude > APART {
-                            return Separated::Branches(paired(before));
-                        }
-                        Some(rays)
-                    }
-                    (_, rays) => rays,
-                }
+            let rays = if signal > CLEAR * floor && signal > NOTHING * size {
+                self.rays(&samples, amplitude)
             } else {
                 None
             };
+            confirmed = match (&before, &rays) {
+                (Some(before), Some(rays)) => alike(before, rays),
+                _ => false,
+            };
+            before = rays;
+            if confirmed && amplitude > APART {
+                break;
+            }
             amplitude *= RATIO;
+        }
+        // where the equations of a larger amplitude have no such solution, the last two still agree
+        if let (true, Some(rays)) = (confirmed, before) {
+            return Separated::Branches(paired(rays));
         }
         if largest >= LARGE && tangential < NOTHING {
             Separated::Circle
@@ -180,7 +186,8 @@ impl<P: Problem> Reduced<'_, '_, '_, P> {
         for (x, v) in xi.iter().zip(self.across) {
             offset.add(amplitude * x, v);
         }
-        let mut last = f64::INFINITY;
+        let mut least = f64::INFINITY;
+        let mut idle = 0;
         let mut tangential = f64::NAN;
         for iteration in 0..60 {
             let mut z = self.z.clone();
@@ -199,15 +206,18 @@ impl<P: Problem> Reduced<'_, '_, '_, P> {
             offset.add(1.0, &step);
             offset.add(radial, self.along);
             let length = self.probe.norm(&step).max(radial.abs());
-            if !length.is_finite() || (iteration > 3 && length > 2.0 * last) {
+            if !length.is_finite() || (iteration > 3 && length > ROUNDING && length > 2.0 * least) {
                 return Err(None);
             }
-            if length < 1e-15 || (length < 1e-11 && length > 0.5 * last) {
+            // small steps that shrink no more are the residual's rounding over the amplitude; what it
+            // does to the tangential part shows in the harmonics that no polygon makes
+            idle = if length > 0.5 * least { idle + 1 } else { 0 };
+            least = least.min(length);
+            if length < 1e-15 || (least < ROUNDING && idle >= 3) {
                 return Ok(Solved { tangential, offset });
             }
-            last = length;
         }
-        if last < 1e-9 { Ok(Solved { tangential, offset }) } else { Err(None) }
+        if least < 1e-9 { Ok(Solved { tangential, offset }) } else { Err(None) }
     }
 }
 
