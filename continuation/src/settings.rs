@@ -29,7 +29,7 @@ pub enum Counting {
     Automatic,
     /// All eigenvalues up to 600 unknowns, whatever the storage: certain, and half a second a point
     /// at 400 unknowns. Beyond it the eigenvalues on the unstable side are counted by the argument
-    /// principle ([`crate::linalg::count_right`]): certain, for 300 to 400 complex factorisations a
+    /// principle ([`crate::linalg::count_right`]): certain, for 300 to 500 complex factorisations a
     /// point. With a mass matrix that is not symmetric and positive definite counts stay uncertain.
     Full,
     /// The few eigenvalues nearest to zero: never certain, cheap at every size.

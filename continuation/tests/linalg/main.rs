@@ -5,6 +5,7 @@ mod arch;
 mod arnoldi;
 mod arrow;
 mod bordered;
+mod half_plane;
 mod lanczos;
 mod matrices;
 mod sparse;
