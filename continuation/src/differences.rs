@@ -36,19 +36,27 @@ const SMOOTH: f64 = 1e-6;
 const STRAIGHT: f64 = 0.5;
 /// A value smaller than this part of the largest unknown may be rounding.
 const SMALL: f64 = 1e-4;
-/// Whether a value is so small beside its unit that its last place says nothing.
-pub(crate) fn is_small(value: f64, unit: f64) -> bool {
-    value.abs() < VANISHES * unit
-}
-
 /// Moves of all arguments by which rounding is measured.
 const MOVES: usize = 3;
 
 /// Unknowns below this may all be rounding; if they are not, shorter steps are found.
-pub(crate) const VANISHES: f64 = 1e-10;
+const VANISHES: f64 = 1e-10;
 
 /// A rung of the ladder that is not known.
 const UNKNOWN: i32 = i32::MAX;
+
+/// The magnitudes of unknowns; `vanishing` where all are rounding, so that they have none.
+pub(crate) fn magnitudes(u: &[f64], vanishing: f64, unit: &mut [f64]) {
+    let largest = crate::linalg::max_abs(u);
+    for (unit, u) in unit.iter_mut().zip(u) {
+        *unit = if largest < VANISHES { vanishing } else { magnitude(*u, largest) };
+    }
+}
+
+/// Whether a value is so small beside its unit that its last place says nothing.
+fn is_small(value: f64, unit: f64) -> bool {
+    value.abs() < VANISHES * unit
+}
 
 /// The magnitude of a variable, a power of two, by which its steps are measured: steps that are
 /// powers of two themselves shift values exactly. `other` stands in for a value that may be rounding.
@@ -112,9 +120,40 @@ impl Ladder {
         }
     }
 
+    /// Takes the value at `u` and `p` and its rounding errors, with `unit` the magnitudes of `u`. `place` and
+    /// `values` are work space: copies of `u` and `p` before and after.
+    pub(crate) fn look(
+        &mut self,
+        (u, p): (&[f64], &[f64]),
+        (place, values): (&mut [f64], &mut [f64]),
+        unit: &[f64],
+        mut f: impl FnMut(&[f64], &[f64], &mut [f64]),
+    ) {
+        self.centre(|turn, r| {
+            for (k, (place, u)) in place.iter_mut().zip(u).enumerate() {
+                *place = moved(*u, k, turn);
+            }
+            for (k, (value, p)) in values.iter_mut().zip(p).enumerate() {
+                *value = moved(*p, u.len() + k, turn);
+            }
+            f(place, values, r);
+        });
+        values.copy_from_slice(p);
+        if u.iter().zip(unit).any(|(u, unit)| is_small(*u, *unit)) {
+            self.small_arguments(|multiple, r| {
+                for (k, ((place, u), unit)) in place.iter_mut().zip(u).zip(unit).enumerate() {
+                    let small = is_small(*u, *unit);
+                    *place = u + if small { multiple * sign(k, 1) * unit } else { 0.0 };
+                }
+                f(place, values, r);
+            });
+        }
+        place.copy_from_slice(u);
+    }
+
     /// The value in the middle and its rounding errors. `f` evaluates with all arguments moved by
     /// the signs of a move, in units of their last place; move 0 is the state itself.
-    pub(crate) fn centre(&mut self, mut f: impl FnMut(usize, &mut [f64])) {
+    fn centre(&mut self, mut f: impl FnMut(usize, &mut [f64])) {
         f(0, &mut self.centre);
         self.noise.fill(0.0);
         for k in 1..=MOVES {
@@ -132,11 +171,12 @@ impl Ladder {
         }
     }
 
-    /// Rounding errors where some arguments are so small that moving them by their last place tells nothing:
-    /// those of arguments of the size of their units, in rows that are nearly straight over a part of these:
-    /// of others the scale is not known. A displacement that is zero is added to a place that is not. `f` evaluates with all of them
-    /// moved by a multiple of their units, with the signs of the first move.
-    pub(crate) fn small_arguments(&mut self, mut f: impl FnMut(f64, &mut [f64])) {
+    /// Rounding errors where some arguments are so small that moving them by their last place tells
+    /// nothing: a displacement that is zero is added to a place that is not. Those of arguments of the
+    /// size of their units are taken, in rows that are nearly straight over a part of these; of others
+    /// the scale is not known. `f` evaluates with all of them moved by a multiple of their units, with
+    /// the signs of the first move.
+    fn small_arguments(&mut self, mut f: impl FnMut(f64, &mut [f64])) {
         let h = f64::from(FIRST).exp2();
         for (place, value) in PLACES.into_iter().zip(&mut self.values) {
             f(place * h, value);
@@ -351,7 +391,7 @@ fn one_sided(g: f64, v: [f64; 6], h: f64, noise: f64) -> Option<Estimate> {
 }
 
 /// The sign, 1, −1 or 0, by which an argument is moved to measure rounding.
-pub(crate) fn sign(index: usize, turn: usize) -> f64 {
+fn sign(index: usize, turn: usize) -> f64 {
     // a multiplicative hash: no pattern in neighbours
     let mixed =
         (index as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(17 * turn as u32);
@@ -365,7 +405,7 @@ pub(crate) fn sign(index: usize, turn: usize) -> f64 {
 }
 
 /// `value` moved by a unit in the last place.
-pub(crate) fn moved(value: f64, index: usize, turn: usize) -> f64 {
+fn moved(value: f64, index: usize, turn: usize) -> f64 {
     value + sign(index, turn) * f64::EPSILON * value
 }
 
@@ -402,27 +442,9 @@ pub(crate) fn along<P: Problem + ?Sized>(
             r.fill(f64::NAN);
         }
     };
-    ladder.centre(|turn, r| {
-        for (k, (place, u)) in place.iter_mut().zip(u).enumerate() {
-            *place = moved(*u, k, turn);
-        }
-        for (k, (value, p)) in values.iter_mut().zip(p).enumerate() {
-            *value = moved(*p, n + k, turn);
-        }
-        evaluate(&place, &values, r);
-    });
-    values.copy_from_slice(p);
-    let largest = crate::linalg::max_abs(u);
-    let size = |u: f64| if largest < VANISHES { unit } else { magnitude(u, largest) };
-    if u.iter().any(|u| is_small(*u, size(*u))) {
-        ladder.small_arguments(|multiple, r| {
-            for (k, (place, u)) in place.iter_mut().zip(u).enumerate() {
-                *place =
-                    u + if is_small(*u, size(*u)) { multiple * sign(k, 1) * size(*u) } else { 0.0 };
-            }
-            evaluate(&place, &values, r);
-        });
-    }
+    let mut magnitude = vec![0.0; n];
+    magnitudes(u, unit, &mut magnitude);
+    ladder.look((u, p), (&mut place, &mut values), &magnitude, evaluate);
     ladder.unit.fill(unit);
     ladder.climb(|multiple, r| {
         let h = multiple * unit;

@@ -1,7 +1,7 @@
 //! Problems from their residual alone, in every storage.
 
-use crate::differences::{Ladder, VANISHES, is_small, magnitude, moved, sign};
-use crate::linalg::{Band, Dense, Matrix, OutsidePattern, Sparse, max_abs};
+use crate::differences::{Ladder, magnitude, magnitudes};
+use crate::linalg::{Band, Dense, Matrix, OutsidePattern, Sparse};
 use crate::problem::{EvalError, ParamId, Parameter, Problem, Stability, check_finite};
 use std::cell::RefCell;
 
@@ -289,32 +289,8 @@ impl<J, F: Fn(&[f64], &[f64], &mut [f64])> ResidualProblem<J, F> {
     /// The value in the middle, its rounding errors, and the magnitudes of the unknowns.
     fn centre(&self, scratch: &mut Scratch, u: &[f64], p: &[f64]) -> Result<(), EvalError> {
         let Scratch { u: place, p: values, unit, ladder } = scratch;
-        ladder.centre(|turn, r| {
-            for (k, (place, u)) in place.iter_mut().zip(u).enumerate() {
-                *place = moved(*u, k, turn);
-            }
-            for (k, (value, p)) in values.iter_mut().zip(p).enumerate() {
-                *value = moved(*p, self.n + k, turn);
-            }
-            (self.f)(place, values, r);
-        });
-        place.copy_from_slice(u);
-        values.copy_from_slice(p);
-        let largest = max_abs(u);
-        for (unit, u) in unit.iter_mut().zip(u) {
-            // a state that vanishes but for rounding has no magnitude
-            *unit = if largest < VANISHES { 1.0 } else { magnitude(*u, largest) };
-        }
-        if u.iter().zip(&*unit).any(|(u, unit)| is_small(*u, *unit)) {
-            ladder.small_arguments(|multiple, r| {
-                for (k, ((place, u), unit)) in place.iter_mut().zip(u).zip(&*unit).enumerate() {
-                    let small = is_small(*u, *unit);
-                    *place = u + if small { multiple * sign(k, 1) * unit } else { 0.0 };
-                }
-                (self.f)(place, values, r);
-            });
-            place.copy_from_slice(u);
-        }
+        magnitudes(u, 1.0, unit);
+        ladder.look((u, p), (place, values), unit, &self.f);
         check_finite(ladder.value())
     }
 
