@@ -259,17 +259,6 @@ impl<F: Potential> Loading for LoadedProblem<'_, F> {
         self.contact.mean_force(u, &inner)
     }
 
-    fn mean_force_along(
-        &self,
-        x: &[f64],
-        p: &[f64],
-        dx: &[f64],
-        dp: f64,
-    ) -> Result<f64, EvalError> {
-        let slope = self.observable_slope(0, x, p, parameter::Z0, dx, dp)?;
-        Ok(slope.unwrap_or(f64::NAN))
-    }
-
     fn energy(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
         let (u, inner) = self.inner(x, p);
         self.contact.total_energy(u, &inner)

@@ -24,7 +24,7 @@ pub use loaded::LoadedProblem;
 pub use maxwell::{MaxwellPoint, maxwell_points};
 pub use start::{StartError, device_watches, free_start, loaded_start, trace_loaded};
 
-use continuation::{EvalError, Problem};
+use continuation::{EvalError, ParamId, Problem};
 
 /// What holds the plates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,13 +121,28 @@ pub trait Loading: Problem {
     /// # Errors
     /// When the state is not admissible.
     fn mean_force(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError>;
-    /// Its derivative along a direction in which the device's parameter moves by `dp`; NaN if it is
-    /// not known.
+    /// The observables of the forces on the upper and the lower plate; one of both where they are equal.
+    fn forces(&self) -> [usize; 2] {
+        [0, 0]
+    }
+    /// Its derivative along a direction in which the device's parameter, the first, moves by `dp`; NaN if it
+    /// is not known.
     ///
     /// # Errors
     /// When the state is not admissible.
-    fn mean_force_along(&self, x: &[f64], p: &[f64], dx: &[f64], dp: f64)
-    -> Result<f64, EvalError>;
+    fn mean_force_along(
+        &self,
+        x: &[f64],
+        p: &[f64],
+        dx: &[f64],
+        dp: f64,
+    ) -> Result<f64, EvalError> {
+        let slope = |k| self.observable_slope(k, x, p, ParamId(0), dx, dp);
+        let [top, bottom] = self.forces();
+        let upper = slope(top)?.unwrap_or(f64::NAN);
+        let lower = if bottom == top { upper } else { slope(bottom)?.unwrap_or(f64::NAN) };
+        Ok(0.5 * (upper + lower))
+    }
     /// Total energy of the whole shell, in `χR0²`.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use crate::energy;
 use crate::film::Potential;
 use crate::plate;
 use continuation::linalg::SymmetricBand;
-use continuation::{EvalError, Matrix, ParamId, Problem};
+use continuation::{EvalError, Matrix, ParamId};
 use std::f64::consts::PI;
 
 impl<F: Potential> ContactProblem<F> {
@@ -71,17 +71,6 @@ impl<F: Potential> Loading for ContactProblem<F> {
 
     fn mean_force(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
         Ok(-2.0 * PI / p[parameter::BENDING.0].sqrt() * self.plate_pull(x, p)?)
-    }
-
-    fn mean_force_along(
-        &self,
-        x: &[f64],
-        p: &[f64],
-        dx: &[f64],
-        dp: f64,
-    ) -> Result<f64, EvalError> {
-        let slope = self.observable_slope(0, x, p, parameter::Z0, dx, dp)?;
-        Ok(slope.unwrap_or(f64::NAN))
     }
 
     fn energy(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {

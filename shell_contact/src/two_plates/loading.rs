@@ -55,9 +55,9 @@ pub fn stable_start<P: Loading>(
     Ok(if lower { relaxation.state().to_vec() } else { first })
 }
 
-/// Half the sum of two slopes of forces.
-fn mean(top: Option<f64>, bottom: Option<f64>) -> f64 {
-    top.zip(bottom).map_or(f64::NAN, |(top, bottom)| 0.5 * (top + bottom))
+/// The columns of the forces on both plates.
+fn both_forces() -> [usize; 2] {
+    [column("force"), column("force_bottom")]
 }
 
 fn column(name: &str) -> usize {
@@ -96,15 +96,8 @@ impl<T: Potential, B: Potential> Loading for TwoPlatesProblem<T, B> {
         self.mean_force_between(x, &c)
     }
 
-    fn mean_force_along(
-        &self,
-        x: &[f64],
-        p: &[f64],
-        dx: &[f64],
-        dp: f64,
-    ) -> Result<f64, EvalError> {
-        let slope = |k| self.observable_slope(k, x, p, parameter::Z0, dx, dp);
-        Ok(mean(slope(column("force"))?, slope(column("force_bottom"))?))
+    fn forces(&self) -> [usize; 2] {
+        both_forces()
     }
 
     fn energy(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
@@ -151,15 +144,8 @@ impl<T: Potential, B: Potential> Loading for SupportedProblem<'_, T, B> {
         self.shell().mean_force_between(u, &c)
     }
 
-    fn mean_force_along(
-        &self,
-        x: &[f64],
-        p: &[f64],
-        dx: &[f64],
-        dp: f64,
-    ) -> Result<f64, EvalError> {
-        let slope = |k| self.observable_slope(k, x, p, parameter::Z0, dx, dp);
-        Ok(mean(slope(column("force"))?, slope(column("force_bottom"))?))
+    fn forces(&self) -> [usize; 2] {
+        both_forces()
     }
 
     fn energy(&self, x: &[f64], p: &[f64]) -> Result<f64, EvalError> {
