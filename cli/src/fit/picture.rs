@@ -21,13 +21,6 @@ pub(super) fn fit(outcome: &Outcome) -> String {
         }
         curve
     };
-    let line = |label: &str, ink, pen, curve| PanelLine {
-        label: label.to_owned(),
-        ink,
-        pen,
-        right: false,
-        curve,
-    };
     let measured = |row: &Row| 1e9 * (row.force - level(row));
     let model = |row: &Row| 1e9 * (row.model - level(row));
     let residual = |row: &Row| if row.used { 1e9 * row.residual } else { f64::NAN };
@@ -119,13 +112,6 @@ pub(super) fn profiles(report: &Report) -> Option<String> {
                 y: vec![LEVEL; 2],
                 ..Curve::default()
             };
-            let line = |label: &str, ink, pen, curve| PanelLine {
-                label: label.to_owned(),
-                ink,
-                pen,
-                right: false,
-                curve,
-            };
             Panel {
                 title: profile.key.clone(),
                 x: format!("{} [{unit}]", profile.key),
@@ -141,4 +127,8 @@ pub(super) fn profiles(report: &Report) -> Option<String> {
     (!panels.is_empty()).then(|| {
         Sheet { title: name(report), subtitle: "profile likelihood".to_owned(), panels }.svg()
     })
+}
+
+fn line(label: &str, ink: Ink, pen: Pen, curve: Curve) -> PanelLine {
+    PanelLine { label: label.to_owned(), ink, pen, right: false, curve }
 }
