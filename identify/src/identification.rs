@@ -2,6 +2,7 @@
 
 use crate::data::Curve;
 use crate::error::FitError;
+use crate::fit::objective::WHITE;
 use crate::fit::{COARSE, COARSE_ERROR, Fitted, Setup, descent, elements, fit, refit};
 use crate::parameters::{Key, Parameters};
 use crate::record::{
@@ -10,7 +11,7 @@ use crate::record::{
 use crate::remarks::{Findings, remarks, weakest};
 use crate::uncertainty::profile::{Profile, profile};
 use crate::uncertainty::verdict::{Reach, judge, reach};
-use crate::uncertainty::{Derived, Linear, Quantity, WHITE, linear};
+use crate::uncertainty::{Derived, Linear, Quantity, linear};
 
 /// Condition number beyond which the parabola is not trusted.
 const ILL_CONDITIONED: f64 = 1e3;
@@ -54,11 +55,12 @@ pub fn identify(
     setup: &Setup,
     profiles: &Profiles,
 ) -> Result<Identification, FitError> {
+    let setup = &setup.with_lever();
     let mut fitted = fit(curve, setup)?;
     let mut evaluations = 0;
     // a profile that finds a lower minimum starts the fit again from there, once
     for again in [true, false] {
-        let known = linear(&fitted, setup.spring_constant_sd)?;
+        let known = linear(&fitted);
         let reach = reach(&fitted);
         let wanted = wanted(profiles, &fitted, &known, reach);
         let found = follow(&fitted, &known, &wanted);
@@ -77,13 +79,13 @@ pub fn identify(
 fn is_parabola(fitted: &Fitted<'_>, known: &Linear, reach: Reach) -> bool {
     let regimes = reach.knee || reach.upturn;
     let bounds = known.at_bound.iter().any(|b| *b);
-    let white = known.autocorrelation <= WHITE;
+    let white = fitted.residuals.autocorrelation <= WHITE;
     regimes
         && !bounds
         && white
         && known.condition <= ILL_CONDITIONED
         && fitted.others.is_empty()
-        && known.chi2_dof <= 2.0
+        && fitted.residuals.chi2_dof <= 2.0
 }
 
 fn wanted(profiles: &Profiles, fitted: &Fitted<'_>, known: &Linear, reach: Reach) -> Vec<Quantity> {
@@ -112,7 +114,7 @@ fn follow(fitted: &Fitted<'_>, known: &Linear, wanted: &[Quantity]) -> Vec<Profi
         .iter()
         .filter_map(|quantity| {
             let along = quantity.along(&coarse.free)?;
-            profile(&coarse, &minimum, *quantity, known.sd(&along).0, known.widened)
+            profile(&coarse, &minimum, *quantity, known.sd(&along))
         })
         .collect()
 }
@@ -131,7 +133,7 @@ fn report(
     let objective = &fitted.objective;
     let p = objective.parameters(&fitted.best.x);
     let parabola = is_parabola(fitted, known, reach);
-    let settled = fitted.best.converged && known.chi2_dof <= 2.0;
+    let settled = fitted.best.converged && fitted.residuals.chi2_dof <= 2.0;
     let describe = |quantity: Quantity| {
         let profile = found.iter().find(|profile| profile.quantity == quantity);
         let moduli = PROFILED.contains(&quantity);
@@ -145,14 +147,14 @@ fn report(
     let fixed = Key::ALL
         .into_iter()
         .filter(|key| !objective.free.contains(key) && p[*key].is_finite())
-        .map(|key| fixed(key, &p, setup));
+        .map(|key| fixed(key, &p));
     let parameters: Vec<Estimate> = free.chain(fixed).collect();
     let derived: Vec<Estimate> = [Derived::Young, Derived::Thickness, Derived::ForceScale]
         .into_iter()
         .map(|d| describe(Quantity::Derived(d)))
         .collect();
     let (rows, jumps, pull_off) = samples(curve, fitted, &p);
-    let findings = Findings { setup, fitted, known, reach, parameters: &parameters };
+    let findings = Findings { setup, fitted, reach, parameters: &parameters };
     let mut warnings = remarks(&findings, &rows);
     if *profiles == Profiles::None && !parabola {
         warnings.push(crate::record::Warning {
@@ -163,10 +165,10 @@ fn report(
         });
     }
     let quality = Quality {
-        chi2_dof: known.chi2_dof,
+        chi2_dof: fitted.residuals.chi2_dof,
         noise: objective.noise,
-        residual_autocorrelation: known.autocorrelation,
-        widened: known.widened,
+        residual_autocorrelation: fitted.residuals.autocorrelation,
+        widened: objective.widened,
         condition: known.condition,
         samples_used: objective.count(),
         samples: curve.len(),
@@ -205,18 +207,17 @@ fn record(profile: &Profile, p: &Parameters) -> ProfileRecord {
 }
 
 /// A quantity that was not fitted.
-fn fixed(key: Key, p: &Parameters, setup: &Setup) -> Estimate {
-    let sd = (key == Key::SpringConstant).then(|| setup.spring_constant_sd * p[key]);
+fn fixed(key: Key, p: &Parameters) -> Estimate {
     Estimate {
         key: key.name().to_owned(),
         value: p[key],
         unit: key.unit(),
-        sd,
+        sd: None,
         sd_statistical: None,
         interval68: [None; 2],
         interval95: [None; 2],
         method: "fixed",
-        prior: sd.map(|sd| PriorRecord { value: p[key], sd }),
+        prior: None,
         prior_pull: None,
         at_bound: false,
         verdict: None,
@@ -243,13 +244,14 @@ fn estimate(
     let at_bound = along.as_ref().is_some_and(|along| {
         known.at_bound.iter().zip(along.iter()).any(|(bound, a)| *bound && *a != 0.0)
     });
-    let (own, lever) = along.as_ref().map_or((f64::NAN, 0.0), |along| known.sd(along));
-    // half widths below and above, in the coordinate, of data and priors; the lever's comes on top
+    let sd = along.as_ref().map_or(f64::NAN, |along| known.sd(along));
+    let own = along.as_ref().map_or(f64::NAN, |along| known.sd_at_known_lever(along));
+    // half widths below and above, in the coordinate
     let widths = |factor: f64, interval: Option<[Option<f64>; 2]>| -> [Option<f64>; 2] {
         match interval {
             _ if at_bound => [None; 2],
-            Some(ends) => ends.map(|end| end.map(|end| end.abs().hypot(factor * lever))),
-            None => [Some(factor * own.hypot(lever)); 2],
+            Some(ends) => ends.map(|end| end.map(f64::abs)),
+            None => [Some(factor * sd); 2],
         }
     };
     let ends = |widths: [Option<f64>; 2]| {

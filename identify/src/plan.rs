@@ -11,8 +11,7 @@ use crate::fit::objective::Objective;
 use crate::lever::LeverBranch;
 use crate::model::{Model, Prediction};
 use crate::parameters::Key;
-use crate::uncertainty::{Derived, Quantity};
-use nalgebra::{DMatrix, DVector};
+use crate::uncertainty::{Derived, Quantity, inverse};
 use serde::Serialize;
 
 /// A measurement that is planned.
@@ -65,7 +64,7 @@ const POINTS: usize = 800;
 /// # Errors
 /// When the shell's parameters are impossible or its branch ends before the deepest height.
 pub fn plan(experiment: &Experiment, depths: usize) -> Result<Vec<Depth>, ModelError> {
-    let setup = &experiment.setup;
+    let setup = &experiment.setup.with_lever();
     let mut p = setup.base;
     p[Key::Contact] = 0.0;
     let model = Model {
@@ -76,12 +75,11 @@ pub fn plan(experiment: &Experiment, depths: usize) -> Result<Vec<Depth>, ModelE
     };
     let reach = f64::from(setup.contacts) * p[Key::Radius];
     // the lever bends too: far enough for the deepest height, cut where that is
-    let mut keys = setup.free.clone();
-    keys.push(Key::SpringConstant);
+    let keys = &setup.free;
     let stiff = (1.0 - experiment.deepest) * reach;
     let mut range = (-experiment.before, 1.5 * stiff);
     let branch = loop {
-        match model.branch_over(range, &p, &keys) {
+        match model.branch_over(range, &p, keys) {
             Ok((branch, _)) => break branch,
             Err(ModelError::TooShort { reached, .. })
                 if reached < range.1 && reached > 0.2 * stiff =>
@@ -97,13 +95,13 @@ pub fn plan(experiment: &Experiment, depths: usize) -> Result<Vec<Depth>, ModelE
     for k in 1..=depths {
         let travel = most * k as f64 / depths as f64;
         let curve = measure(experiment, &branch, travel);
-        let prediction = model.predict(&curve, &branch, &p, &keys, 1.0 / experiment.noise);
+        let prediction = model.predict(&curve, &branch, &p, keys, 1.0 / experiment.noise);
         let deformation = prediction
             .height
             .iter()
             .fold(0.0_f64, |d, z| if z.is_finite() { d.max(1.0 - z) } else { d });
         let force = prediction.force.iter().fold(0.0_f64, |m, f| m.max(*f));
-        let sd = information(experiment, &curve, model, prediction, &keys);
+        let sd = information(setup, experiment.noise, &curve, model, prediction);
         found.push(Depth { deformation, travel, force, sd });
     }
     Ok(found)
@@ -141,13 +139,13 @@ fn measure(experiment: &Experiment, branch: &LeverBranch, travel: f64) -> Curve 
 
 /// Relative standard deviations from the Fisher information.
 fn information(
-    experiment: &Experiment,
+    setup: &Setup,
+    noise: f64,
     curve: &Curve,
     model: Model,
     prediction: Prediction,
-    keys: &[Key],
 ) -> Vec<f64> {
-    let setup = &experiment.setup;
+    let keys = &setup.free;
     let used = (0..prediction.inside.len()).map(|i| {
         let jump =
             |j: usize| prediction.stretch.get(j).is_some_and(|s| *s != prediction.stretch[i]);
@@ -156,37 +154,24 @@ fn information(
     let objective = Objective {
         curve,
         used: used.collect(),
-        noise: experiment.noise,
+        noise,
+        widened: 1.0,
         model,
         base: setup.base,
-        free: keys.to_vec(),
-        priors: Vec::new(),
+        free: keys.clone(),
+        priors: setup.priors.clone(),
         bounds: vec![(f64::NEG_INFINITY, f64::INFINITY); keys.len()],
         robust: false,
     };
-    let mut normal = objective.sum(prediction).normal;
-    for prior in &setup.priors {
-        if let Some(k) = keys.iter().position(|key| *key == prior.key) {
-            let sd = prior.in_coordinate().1;
-            normal[(k, k)] += 1.0 / (sd * sd);
-        }
-    }
-    // the lever is considered, as a fit does: not fitted
-    let n = keys.len() - 1;
-    let own = normal.view((0, 0), (n, n)).into_owned();
-    let pull: DVector<f64> = normal.view((0, n), (n, 1)).column(0).into_owned();
-    let scale: Vec<f64> = (0..n).map(|k| own[(k, k)].sqrt().max(f64::MIN_POSITIVE)).collect();
-    let scaled = DMatrix::from_fn(n, n, |i, j| own[(i, j)] / (scale[i] * scale[j]));
-    let Some(inverse) = scaled.try_inverse() else { return vec![f64::INFINITY; QUANTITIES.len()] };
-    let covariance = DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
-    let by_lever = -(&covariance * pull);
-    let total = &covariance
-        + &by_lever * by_lever.transpose() * setup.spring_constant_sd * setup.spring_constant_sd;
+    let mut at = objective.sum(prediction);
+    objective.add_priors(&objective.place(&setup.base), &mut at);
+    let every: Vec<usize> = (0..keys.len()).collect();
+    let (covariance, _) = inverse(&at.normal, &every);
     QUANTITIES
         .into_iter()
         .map(|quantity| {
-            let along = quantity.along(&keys[..n]);
-            along.map_or(0.0, |a| a.dot(&(&total * &a)).max(0.0).sqrt())
+            let along = quantity.along(keys);
+            along.map_or(0.0, |a| a.dot(&(&covariance * &a)).max(0.0).sqrt())
         })
         .collect()
 }

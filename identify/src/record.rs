@@ -13,9 +13,9 @@ pub struct Estimate {
     pub value: f64,
     /// Its SI unit; empty for pure numbers.
     pub unit: &'static str,
-    /// Standard deviation, the lever's part included.
+    /// Standard deviation.
     pub sd: Option<f64>,
-    /// The part of it that data and priors leave, with the lever's stiffness known exactly.
+    /// What would be left of it, by the covariance, if the lever's stiffness were known exactly.
     pub sd_statistical: Option<f64>,
     /// Ends of the 68 % interval; null: open.
     pub interval68: [Option<f64>; 2],
@@ -75,7 +75,7 @@ pub struct Quality {
     pub noise: f64,
     /// Autocorrelation of the residuals at the next sample.
     pub residual_autocorrelation: f64,
-    /// Factor by which variances were widened for both.
+    /// Factor by which the variance of the data was widened for both.
     pub widened: f64,
     /// Condition number of the normal matrix, scaled to a unit diagonal.
     pub condition: f64,

@@ -1,10 +1,11 @@
 //! What deserves to be said of a fit, in words and with codes for programs.
 
+use crate::fit::objective::WHITE;
 use crate::fit::{Fitted, Setup};
 use crate::parameters::Key;
 use crate::record::{Estimate, Row, Warning};
 use crate::uncertainty::verdict::Reach;
-use crate::uncertainty::{Derived, Linear, Quantity, WHITE};
+use crate::uncertainty::{Derived, Linear, Quantity};
 use nalgebra::SymmetricEigen;
 
 /// Share of the lever's deflection in the travel above which it hides the bubble.
@@ -18,8 +19,6 @@ pub(crate) struct Findings<'a> {
     pub(crate) setup: &'a Setup,
     /// The fit.
     pub(crate) fitted: &'a Fitted<'a>,
-    /// Its linearised uncertainty.
-    pub(crate) known: &'a Linear,
     /// How far the curve goes.
     pub(crate) reach: Reach,
     /// The parameters as they are reported.
@@ -28,7 +27,8 @@ pub(crate) struct Findings<'a> {
 
 /// All remarks on a fit.
 pub(crate) fn remarks(found: &Findings<'_>, rows: &[Row]) -> Vec<Warning> {
-    let Findings { setup, fitted, known, reach, parameters, .. } = found;
+    let Findings { setup, fitted, reach, parameters } = found;
+    let residuals = fitted.residuals;
     let mut out = Vec::new();
     let mut say = |code: &'static str, text: String| out.push(Warning { code, text });
     if !(reach.knee || reach.upturn) {
@@ -64,23 +64,23 @@ pub(crate) fn remarks(found: &Findings<'_>, rows: &[Row]) -> Vec<Warning> {
     if !fitted.best.converged {
         say("not-settled", "the descent did not settle: no number is called identified".to_owned());
     }
-    if known.chi2_dof > 2.0 {
+    if residuals.chi2_dof > 2.0 {
         say(
             "poor-fit",
             format!(
                 "chi2/dof = {:.2}: the model does not describe this curve within its noise",
-                known.chi2_dof
+                residuals.chi2_dof
             ),
         );
     }
-    if known.autocorrelation > WHITE {
+    if residuals.autocorrelation > WHITE {
         say(
             "correlated-residuals",
             format!(
                 "residuals of neighbouring samples are correlated ({:.2}): noise that is not white, or \
                  a model that misses something; intervals are widened by {:.2}",
-                known.autocorrelation,
-                known.widened.sqrt()
+                residuals.autocorrelation,
+                fitted.objective.widened.sqrt()
             ),
         );
     }
@@ -123,7 +123,8 @@ pub(crate) fn remarks(found: &Findings<'_>, rows: &[Row]) -> Vec<Warning> {
         .iter()
         .filter(|e| match (e.sd, e.sd_statistical) {
             (Some(all), Some(own)) => {
-                Key::of(&e.key).is_some_and(Key::is_logarithmic)
+                Key::of(&e.key)
+                    .is_some_and(|key| key.is_logarithmic() && key != Key::SpringConstant)
                     && all > 3.0 * own
                     && all > 0.03 * e.value
             }
@@ -131,13 +132,14 @@ pub(crate) fn remarks(found: &Findings<'_>, rows: &[Row]) -> Vec<Warning> {
         })
         .map(|e| e.key.as_str())
         .collect();
+    let lever = setup.priors.iter().find(|prior| prior.key == Key::SpringConstant);
     if !limited.is_empty() {
         say(
             "spring-constant",
             format!(
                 "the lever's stiffness (sd {:.1} %) is what limits {}; calibrate it better, and say so in \
                  spring_constant_sd",
-                100.0 * known.lever_sd,
+                100.0 * lever.map_or(f64::NAN, |prior| prior.in_coordinate().1),
                 limited.join(", ")
             ),
         );
@@ -153,7 +155,7 @@ pub(crate) fn weakest(fitted: &Fitted<'_>, known: &Linear) -> String {
     if at.is_empty() {
         return "nothing of the shell was fitted".to_owned();
     }
-    let total = known.total();
+    let total = &known.covariance;
     let part = nalgebra::DMatrix::from_fn(at.len(), at.len(), |i, j| total[(at[i], at[j])]);
     let eigen = SymmetricEigen::new(part);
     let largest = eigen.eigenvalues.imax();
@@ -164,10 +166,7 @@ pub(crate) fn weakest(fitted: &Fitted<'_>, known: &Linear) -> String {
     let (first, second) = (order[0], order.get(1).copied());
     let percent = |sd: f64| format!("{:.2} %", 100.0 * sd);
     let scale = Quantity::Derived(Derived::ForceScale).along(free);
-    let scale = scale.map_or(f64::NAN, |along| {
-        let (own, lever) = known.sd(&along);
-        own.hypot(lever)
-    });
+    let scale = scale.map_or(f64::NAN, |along| known.sd(&along));
     let name = |k: usize| free[at[k]].name();
     let moduli = |k: usize| matches!(free[at[k]], Key::Chi | Key::Bending);
     match second {

@@ -1,16 +1,33 @@
-//! How often 95 % intervals hold the truth, over noise that the tests make themselves.
+//! How often 95 % intervals hold the truth, over noise, optical radii and calibrations of the lever that the
+//! tests draw themselves. The intervals are those that `arclen fit` reports when nothing is asked for: of the
+//! joint fit, from the profile where one is needed and from the covariance where not.
+//!
+//! The descents start at the truth. A grid finds the same minimum, later: the last test sees to it.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
 mod common;
 
-use common::{Known, Normal, fill, heights, parameters};
+use common::{Normal, fill, heights, parameters};
 use identify::branch::Effort;
-use identify::fit::objective::Prior;
+use identify::data::Curve;
+use identify::fit::{Setup, objective::Prior};
 use identify::model::Model;
+use identify::record::Report;
 use identify::{Key, LawName, Parameters, Profiles, identify};
+use std::ops::Range;
 
-const KEYS: [&str; 7] =
-    ["young", "thickness", "sqrt_chi_kb", "adhesion", "film", "radius", "contact"];
+const KEYS: [&str; 10] = [
+    "young",
+    "thickness",
+    "sqrt_chi_kb",
+    "chi",
+    "bending",
+    "adhesion",
+    "film",
+    "radius",
+    "spring_constant",
+    "contact",
+];
 
 struct Specimen {
     law: LawName,
@@ -20,86 +37,96 @@ struct Specimen {
     noise: f64,
 }
 
-/// A hard shell past its knee, and a soft one at its upturn.
-fn specimens() -> [Specimen; 2] {
-    [
-        Specimen {
-            law: LawName::Hooke,
-            truth: parameters([37.4, 2.01129e-15, 2e-4, 20e-9, 1.62e-6, 1.2, 7.8e-6]),
-            from: 8.5e-6,
-            to: 7.4e-6,
-            noise: 1.5e-10,
-        },
-        Specimen {
-            law: LawName::MooneyRivlin,
-            truth: parameters([0.06, 4e-16, 2e-4, 40e-9, 1.4e-6, 0.06, 12.2588772e-6]),
-            from: 13.1e-6,
-            to: 11.2e-6,
-            noise: 5e-11,
-        },
-    ]
+/// A hard shell past its knee.
+fn hard() -> Specimen {
+    Specimen {
+        law: LawName::Hooke,
+        truth: parameters([37.4, 2.01129e-15, 2e-4, 20e-9, 1.62e-6, 1.2, 7.8e-6]),
+        from: 8.5e-6,
+        to: 7.4e-6,
+        noise: 1.5e-10,
+    }
 }
 
-/// Counts, by quantity, in how many of the seeds the interval held the truth.
-fn count(specimen: &Specimen, seeds: std::ops::Range<u64>) -> ([usize; KEYS.len()], usize) {
-    let mut truth = specimen.truth;
-    truth[Key::Offset] = -2e-9;
-    truth[Key::Tilt] = 3e-4;
-    let mut inside = [0; KEYS.len()];
-    let mut fitted = 0;
-    for seed in seeds {
+/// A soft one at its upturn.
+fn soft() -> Specimen {
+    Specimen {
+        law: LawName::MooneyRivlin,
+        truth: parameters([0.06, 4e-16, 2e-4, 40e-9, 1.4e-6, 0.06, 12.2588772e-6]),
+        from: 13.1e-6,
+        to: 11.2e-6,
+        noise: 5e-11,
+    }
+}
+
+impl Specimen {
+    /// A measurement of it: the curve, and what the laboratory knows.
+    fn measure(&self, seed: u64) -> (Curve, Setup) {
+        let mut truth = self.truth;
+        truth[Key::Offset] = -2e-9;
+        truth[Key::Tilt] = 3e-4;
         let mut normal = Normal(seed);
-        let mut curve = heights(specimen.from, specimen.to, 200);
-        let model = Model {
-            law: specimen.law,
-            contacts: 2,
-            nominal_spring_constant: truth[Key::SpringConstant],
-            effort: Effort { elements: 160, points: 600, force_error: 1e-3 * specimen.noise },
+        // what the microscope and the calibration say has errors of its own
+        let optical = Prior {
+            key: Key::Radius,
+            value: truth[Key::Radius] * (0.03 * normal.next()).exp(),
+            sd: 0.03 * truth[Key::Radius],
         };
-        fill(&mut curve, &model, &truth, specimen.noise, &mut normal);
-        // what the microscope says has an error of its own
-        let value = truth[Key::Radius] + 5e-8 * normal.next();
-        let optical = Prior { key: Key::Radius, value, sd: 5e-8 };
-        let known = Known { curve, law: specimen.law, truth, optical };
-        let found = identify(&known.curve, &known.setup(), &Profiles::None).unwrap();
-        fitted += 1;
-        for (k, key) in KEYS.into_iter().enumerate() {
-            let estimate = found.report.estimate(key).unwrap();
-            let truth = match key {
-                "young" => truth.young(),
-                "thickness" => truth.thickness(),
-                "sqrt_chi_kb" => truth.force_scale(),
-                other => truth[Key::of(other).unwrap()],
-            };
-            let [low, high] = estimate.interval95.map(|end| end.unwrap());
-            inside[k] += usize::from(low < truth && truth < high);
+        let nominal = truth[Key::SpringConstant] * (0.1 * normal.next()).exp();
+        let mut curve = heights(self.from, self.to, 200);
+        let model = Model {
+            law: self.law,
+            contacts: 2,
+            nominal_spring_constant: nominal,
+            effort: Effort { elements: 160, points: 600, force_error: 1e-3 * self.noise },
+        };
+        fill(&mut curve, &model, &truth, self.noise, &mut normal);
+        let mut base = Parameters::default();
+        base[Key::SpringConstant] = nominal;
+        base[Key::Radius] = optical.value;
+        (curve, Setup::new(self.law, base, vec![optical]))
+    }
+
+    fn truth(&self, key: &str) -> f64 {
+        match key {
+            "young" => self.truth.young(),
+            "thickness" => self.truth.thickness(),
+            "sqrt_chi_kb" => self.truth.force_scale(),
+            other => self.truth[Key::of(other).unwrap()],
         }
     }
-    (inside, fitted)
+
+    /// Whether each interval holds the truth; an open end holds everything.
+    fn inside(&self, report: &Report) -> [bool; KEYS.len()] {
+        KEYS.map(|key| {
+            let [low, high] = report.estimate(key).unwrap().interval95;
+            let truth = self.truth(key);
+            low.is_none_or(|low| low < truth) && high.is_none_or(|high| truth < high)
+        })
+    }
+
+    /// By quantity, in how many of the seeds the interval held the truth.
+    fn count(&self, seeds: Range<u64>) -> [u64; KEYS.len()] {
+        let mut count = [0; KEYS.len()];
+        for seed in seeds {
+            let (curve, mut setup) = self.measure(seed);
+            setup.start = Some(self.truth);
+            let found = identify(&curve, &setup, &Profiles::WhereNeeded).unwrap();
+            for (count, inside) in count.iter_mut().zip(self.inside(&found.report)) {
+                *count += u64::from(inside);
+            }
+        }
+        count
+    }
 }
 
-/// Five seeds each: at a coverage of 95 % fewer than 28 of 35 are rare, though quantities of one fit are not
-/// independent. It finds intervals that lie grossly, no more.
+/// Five seeds of each shell: at a coverage of 95 % fewer than 80 of 100 are rare, though quantities of one fit
+/// are not independent. It finds intervals that lie grossly, no more.
 #[test]
 fn a_few_seeds_hold_the_truth() {
-    for specimen in specimens() {
-        let (inside, fitted) = count(&specimen, 0..5);
-        let all: usize = inside.iter().sum();
-        assert_eq!(fitted, 5);
-        assert!(all >= 28, "{inside:?} of {fitted}");
-    }
-}
-
-/// 200 seeds of each: half an hour of one core.
-#[test]
-#[ignore = "slow: 400 fits"]
-fn two_hundred_seeds_cover_between_90_and_98_per_cent() {
-    for specimen in specimens() {
-        let (inside, fitted) = count(&specimen, 0..200);
-        println!("{:?}: {inside:?} of {fitted}", specimen.law);
-        for (key, inside) in KEYS.into_iter().zip(inside) {
-            let share = inside as f64 / fitted as f64;
-            assert!((0.90..=0.98).contains(&share), "{key}: {share}");
-        }
+    for specimen in [hard(), soft()] {
+        let inside = specimen.count(0..5);
+        let all: u64 = inside.iter().sum();
+        assert!(all >= 40, "{:?}: {inside:?} of 5", specimen.law);
     }
 }

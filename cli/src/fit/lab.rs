@@ -246,12 +246,6 @@ impl Lab {
         for name in wishes.free {
             let key = key("--free", name)?;
             free(&mut setup, key);
-            if key == Key::SpringConstant {
-                let (value, sd) = (base[key], setup.spring_constant_sd * base[key]);
-                if sd > 0.0 && !setup.priors.iter().any(|p| p.key == key) {
-                    setup.priors.push(Prior { key, value, sd });
-                }
-            }
         }
         for name in wishes.fix {
             let key = key("--fix", name)?;
@@ -262,6 +256,9 @@ impl Lab {
             }
             setup.free.retain(|k| *k != key);
             setup.priors.retain(|p| p.key != key);
+            if key == Key::SpringConstant {
+                setup.spring_constant_sd = 0.0;
+            }
         }
         let radius = Key::Radius;
         if setup.base[radius].is_nan() {
@@ -273,9 +270,6 @@ impl Lab {
         }
         if let Some(range) = wishes.range {
             setup.range = Some(parse_range(range)?);
-        }
-        if setup.spring_constant_sd == 0.0 && self.spring_constant_sd.is_none() {
-            setup.spring_constant_sd = 0.1;
         }
         Ok(setup)
     }

@@ -15,7 +15,7 @@ use crate::model::Model;
 use crate::parameters::{Key, LawName, Parameters};
 use descent::{BOLD, CAREFUL, Limits, Minimum, descend};
 use nalgebra::DVector;
-use objective::{Objective, Prior};
+use objective::{Objective, Prior, Residuals};
 use starts::{Look, grid, look};
 use std::f64::consts::PI;
 
@@ -32,7 +32,7 @@ pub struct Setup {
     pub free: Vec<Key>,
     /// What is known of it.
     pub priors: Vec<Prior>,
-    /// Relative standard deviation of the lever's stiffness.
+    /// Relative standard deviation of the lever's stiffness; 0: known exactly.
     pub spring_constant_sd: f64,
     /// Soft-L1 in place of squares.
     pub robust: bool,
@@ -40,6 +40,9 @@ pub struct Setup {
     pub only: Option<Direction>,
     /// Piezo heights that are fitted, m; all without.
     pub range: Option<(f64, f64)>,
+    /// Where the descent starts, such as the fit of the curve before; a grid without. Other minima are not
+    /// looked for then.
+    pub start: Option<Parameters>,
 }
 
 impl Setup {
@@ -56,7 +59,24 @@ impl Setup {
             robust: false,
             only: None,
             range: None,
+            start: None,
         }
+    }
+
+    /// The setup with the lever's stiffness among what is looked for and its calibration as a prior, unless
+    /// it is known exactly. So what the optical radius or the pressure of the gas say of the lever counts.
+    #[must_use]
+    pub fn with_lever(&self) -> Setup {
+        const K: Key = Key::SpringConstant;
+        let mut setup = self.clone();
+        let (value, sd) = (self.base[K], self.spring_constant_sd * self.base[K]);
+        if sd > 0.0 && !self.priors.iter().any(|prior| prior.key == K) {
+            setup.priors.push(Prior { key: K, value, sd });
+            if !self.free.contains(&K) {
+                setup.free.push(K);
+            }
+        }
+        setup
     }
 }
 
@@ -94,6 +114,8 @@ pub struct Fitted<'a> {
     pub objective: Objective<'a>,
     /// Its best minimum.
     pub best: Minimum,
+    /// The residuals before the variance of the data was widened for them.
+    pub residuals: Residuals,
     /// The branch there.
     pub branch: LeverBranch,
     /// Whether its mesh resolves it.
@@ -207,6 +229,7 @@ pub fn check<'a>(curve: &'a Curve, setup: &Setup) -> Result<(Objective<'a>, Look
         curve,
         used: used_samples(curve, setup),
         noise,
+        widened: 1.0,
         model,
         base: *p,
         free: setup.free.clone(),
@@ -223,6 +246,21 @@ pub fn check<'a>(curve: &'a Curve, setup: &Setup) -> Result<(Objective<'a>, Look
 /// When there is nothing to fit, or no start leads anywhere.
 pub fn fit<'a>(curve: &'a Curve, setup: &Setup) -> Result<Fitted<'a>, FitError> {
     let (mut full, look) = check(curve, setup)?;
+    if let Some(start) = &setup.start {
+        let x = full.place(start);
+        let polished = polish(&mut full, &x)?;
+        return Ok(Fitted {
+            best: polished.best,
+            residuals: polished.residuals,
+            branch: polished.branch,
+            branch_resolved: polished.resolved,
+            others: Vec::new(),
+            starts: 1,
+            evaluations: polished.evaluations,
+            look,
+            objective: full,
+        });
+    }
     let stride = (curve.len() / THINNED).max(1);
     let thin_curve = curve.thinned(stride);
     let mut thin = Objective { curve: &thin_curve, ..full.clone() };
@@ -256,6 +294,7 @@ pub fn fit<'a>(curve: &'a Curve, setup: &Setup) -> Result<Fitted<'a>, FitError> 
     let polished = polish(&mut full, &x)?;
     Ok(Fitted {
         best: polished.best,
+        residuals: polished.residuals,
         branch: polished.branch,
         branch_resolved: polished.resolved,
         others,
@@ -275,6 +314,7 @@ pub fn refit<'a>(earlier: Fitted<'a>, x: &DVector<f64>) -> Result<Fitted<'a>, Fi
     let polished = polish(&mut objective, x)?;
     Ok(Fitted {
         best: polished.best,
+        residuals: polished.residuals,
         branch: polished.branch,
         branch_resolved: polished.resolved,
         evaluations: earlier.evaluations + polished.evaluations,
@@ -286,15 +326,18 @@ pub fn refit<'a>(earlier: Fitted<'a>, x: &DVector<f64>) -> Result<Fitted<'a>, Fi
 /// The end of a fit.
 struct Polished {
     best: Minimum,
+    residuals: Residuals,
     branch: LeverBranch,
     resolved: bool,
     evaluations: usize,
 }
 
-/// On all samples, then on the fine mesh without those beside jumps.
+/// On all samples, then on the fine mesh without those beside jumps, and once more with the variance that the
+/// residuals call for.
 fn polish(full: &mut Objective<'_>, x: &DVector<f64>) -> Result<Polished, FitError> {
     let mut x = x.clone();
     let mut evaluations = 0;
+    full.widened = 1.0;
     full.model.effort.elements = elements(&full.parameters(&x), COARSE, 1.0);
     full.model.effort.force_error = COARSE_ERROR * full.noise;
     if let Some(found) =
@@ -311,16 +354,23 @@ fn polish(full: &mut Objective<'_>, x: &DVector<f64>) -> Result<Polished, FitErr
     full.model.effort.elements = elements(&full.parameters(&x), FINE, 2.0);
     let limits = Limits { evaluations: 40, tolerance: 1e-4, damping: BOLD };
     for last in [false, true] {
-        let Some(best) = descend(full, &x, None, limits) else { return Err(FitError::NoStart) };
+        let Some(mut best) = descend(full, &x, None, limits) else { return Err(FitError::NoStart) };
         evaluations += best.evaluations;
+        let residuals = full.residuals(&best.at);
+        if residuals.widened() > 1.0 {
+            full.widened = residuals.widened();
+            best = descend(full, &best.x, None, limits).ok_or(FitError::NoStart)?;
+            evaluations += best.evaluations;
+        }
         let p = full.parameters(&best.x);
         let (branch, resolution) =
             full.model.branch(full.curve, &p, &full.free).map_err(FitError::Model)?;
         let finer = (full.model.effort.elements as f64 * resolution.factor()).ceil();
         if resolution.is_enough() || last || full.model.effort.elements as f64 >= FINE.1 {
             let resolved = resolution.is_enough();
-            return Ok(Polished { best, branch, resolved, evaluations });
+            return Ok(Polished { best, residuals, branch, resolved, evaluations });
         }
+        full.widened = 1.0;
         full.model.effort.elements = finer.min(FINE.1) as usize;
         x = best.x;
     }

@@ -1,11 +1,12 @@
 //! What a fit makes small: weighted residuals, and what is known beforehand.
 //!
 //! ```text
-//! 2 Φ = Σ_i ρ((y_i − F_i)²/σ²) + Σ_k ((x_k − m_k)/s_k)²
+//! 2 Φ = 1/w Σ_i ρ((y_i − F_i)²/σ²) + Σ_k ((x_k − m_k)/s_k)²
 //! ```
 //!
 //! `ρ(t) = t`, or soft-L1 `2c²(√(1 + t/c²) − 1)` when robust. Priors are normal in the coordinate (the
-//! logarithm, for positive quantities).
+//! logarithm, for positive quantities). `w ≥ 1` is by how much the variance of the data exceeds `σ²`, as
+//! their residuals tell: it weakens what the data say, and not what was known beforehand.
 
 use crate::data::Curve;
 use crate::error::ModelError;
@@ -43,6 +44,8 @@ pub struct Objective<'a> {
     pub used: Vec<bool>,
     /// Noise of the force, N.
     pub noise: f64,
+    /// `w`: the factor on its variance that the residuals call for ([`Objective::residuals`]).
+    pub widened: f64,
     /// The model.
     pub model: Model,
     /// Values of all that is not free.
@@ -62,16 +65,40 @@ pub struct Objective<'a> {
 pub struct Evaluation {
     /// `2Φ`.
     pub cost: f64,
-    /// The part of the data.
+    /// The sum over the data, before it is divided by `w`.
     pub chi2: f64,
-    /// `JᵀJ` over the coordinates, priors included.
+    /// `JᵀJ/w` over the coordinates, priors included.
     pub normal: DMatrix<f64>,
-    /// `Jᵀr`, with `r = (F − y)/σ`: half the gradient of the cost.
+    /// `Jᵀr/w`, with `r = (F − y)/σ`: half the gradient of the cost.
     pub gradient: DVector<f64>,
     /// The model at every sample.
     pub prediction: Prediction,
     /// Jacobians of the shell assembled.
     pub assemblies: usize,
+}
+
+/// Autocorrelation below which residuals count as white.
+pub const WHITE: f64 = 0.12;
+
+/// Size and colour of the residuals of a fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Residuals {
+    /// `χ²` over degrees of freedom.
+    pub chi2_dof: f64,
+    /// Autocorrelation at the next sample.
+    pub autocorrelation: f64,
+}
+
+impl Residuals {
+    /// By what the variance of the data exceeds that of white noise of the assumed size.
+    pub fn widened(&self) -> f64 {
+        let correlated = if self.autocorrelation > WHITE {
+            (1.0 + self.autocorrelation) / (1.0 - self.autocorrelation.min(0.98))
+        } else {
+            1.0
+        };
+        self.chi2_dof.max(1.0) * correlated
+    }
 }
 
 impl Objective<'_> {
@@ -132,6 +159,7 @@ impl Objective<'_> {
             let (rho, w) = self.loss(r);
             chi2 += rho;
             let row = &prediction.by_key[i * n..(i + 1) * n];
+            let w = w / self.widened;
             let w2 = w * weight * weight;
             for a in 0..n {
                 gradient[a] += w * weight * r * row[a];
@@ -145,7 +173,33 @@ impl Objective<'_> {
                 normal[(b, a)] = normal[(a, b)];
             }
         }
-        Evaluation { cost: chi2, chi2, normal, gradient, prediction, assemblies: 0 }
+        let cost = chi2 / self.widened;
+        Evaluation { cost, chi2, normal, gradient, prediction, assemblies: 0 }
+    }
+
+    /// What the residuals at a place say of the noise.
+    pub fn residuals(&self, at: &Evaluation) -> Residuals {
+        let mut first = 0;
+        let (mut product, mut square) = (0.0, 0.0);
+        for segment in &self.curve.segments {
+            let mut last: Option<f64> = None;
+            for (i, y) in segment.force.iter().enumerate() {
+                if !self.used[first + i] {
+                    last = None;
+                    continue;
+                }
+                let r = ((y - at.prediction.force[first + i]) / self.noise).clamp(-4.0, 4.0);
+                if let Some(last) = last {
+                    product += last * r;
+                }
+                square += r * r;
+                last = Some(r);
+            }
+            first += segment.force.len();
+        }
+        let dof = self.count().saturating_sub(self.free.len()).max(1) as f64;
+        let autocorrelation = if square > 0.0 { product / square } else { 0.0 };
+        Residuals { chi2_dof: at.chi2 / dof, autocorrelation }
     }
 
     /// `ρ(r²)` and its slope.
@@ -157,7 +211,8 @@ impl Objective<'_> {
         (2.0 * SOFT * SOFT * (root - 1.0), 1.0 / root)
     }
 
-    fn add_priors(&self, x: &DVector<f64>, e: &mut Evaluation) {
+    /// Adds what is known beforehand.
+    pub(crate) fn add_priors(&self, x: &DVector<f64>, e: &mut Evaluation) {
         for prior in &self.priors {
             let Some(k) = self.free.iter().position(|key| *key == prior.key) else { continue };
             let (centre, sd) = prior.in_coordinate();

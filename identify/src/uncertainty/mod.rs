@@ -1,9 +1,8 @@
 //! How well a fit knows what it says.
 //!
-//! The covariance is that of the linearised problem, priors included, widened by `χ²/dof` and by the
-//! autocorrelation of the residuals where these exceed what white noise of the assumed size has. The lever's
-//! stiffness is not fitted: it is a quantity to consider. The estimate is the one at its nominal value, and
-//! its uncertainty is carried over by `dx/d ln K = −N⁻¹ Jᵀ W J_K`.
+//! The covariance is that of the linearised problem, priors included, with the data's part widened by `χ²/dof`
+//! and by the autocorrelation of the residuals where these exceed what white noise of the assumed size has. The
+//! lever's stiffness is one of the unknowns, with its calibration as prior.
 //!
 //! Where the parabola is not to be trusted the profile is computed ([`profile`]): the least cost with one
 //! combination held.
@@ -11,7 +10,6 @@
 pub mod profile;
 pub mod verdict;
 
-use crate::error::FitError;
 use crate::fit::Fitted;
 use crate::parameters::{Key, Parameters};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -115,77 +113,63 @@ impl Quantity {
 /// The linearised uncertainty of a fit.
 #[derive(Debug, Clone)]
 pub struct Linear {
-    /// Covariance of the free coordinates, priors included, widened; what is at a bound has none.
+    /// Covariance of the free coordinates, priors included; what is at a bound has none.
     pub covariance: DMatrix<f64>,
-    /// `dx/d ln K`.
-    pub by_lever: DVector<f64>,
-    /// Relative standard deviation of the lever's stiffness that is carried over.
-    pub lever_sd: f64,
     /// Condition number of the normal matrix, scaled to a unit diagonal.
     pub condition: f64,
-    /// By what variances were widened.
-    pub widened: f64,
-    /// `χ²` over degrees of freedom.
-    pub chi2_dof: f64,
-    /// Autocorrelation of the residuals at the next sample.
-    pub autocorrelation: f64,
     /// Which coordinates are at a bound.
     pub at_bound: Vec<bool>,
+    /// Which coordinate is the lever's stiffness, if it is free.
+    lever: Option<usize>,
 }
 
 impl Linear {
-    /// Standard deviations of a combination: of the data and priors, and of the lever.
-    pub fn sd(&self, along: &DVector<f64>) -> (f64, f64) {
-        let own = along.dot(&(&self.covariance * along)).max(0.0).sqrt();
-        (own, (along.dot(&self.by_lever) * self.lever_sd).abs())
+    /// Standard deviation of a combination.
+    pub fn sd(&self, along: &DVector<f64>) -> f64 {
+        along.dot(&(&self.covariance * along)).max(0.0).sqrt()
     }
 
-    /// The covariance with the lever's part.
-    pub fn total(&self) -> DMatrix<f64> {
-        let variance = self.lever_sd * self.lever_sd;
-        &self.covariance + &self.by_lever * self.by_lever.transpose() * variance
+    /// What would be left of it if the lever's stiffness were known exactly.
+    pub fn sd_at_known_lever(&self, along: &DVector<f64>) -> f64 {
+        let of_lever = self.lever.map_or(0.0, |k| {
+            let variance = self.covariance[(k, k)];
+            let shared = self.covariance.column(k).dot(along);
+            if variance > 0.0 { shared * shared / variance } else { 0.0 }
+        });
+        (self.sd(along).powi(2) - of_lever).max(0.0).sqrt()
     }
 }
 
-/// Autocorrelation below which residuals count as white.
-pub const WHITE: f64 = 0.12;
-
 /// Computes it.
-///
-/// # Errors
-/// When the model has no value at the minimum.
-pub fn linear(fitted: &Fitted<'_>, spring_constant_sd: f64) -> Result<Linear, FitError> {
+pub fn linear(fitted: &Fitted<'_>) -> Linear {
     let objective = &fitted.objective;
     let n = objective.free.len();
     let best = &fitted.best;
-    let p = objective.parameters(&best.x);
     let mut at_bound = vec![false; n];
     for (k, (low, high)) in objective.bounds.iter().enumerate() {
         let width = 1e-6 * (high - low).min(1e6);
         at_bound[k] = best.x[k] <= low + width || best.x[k] >= high - width;
     }
     let inner: Vec<usize> = (0..n).filter(|k| !at_bound[*k]).collect();
-    let m = inner.len();
+    let (inverse, condition) = inverse(&best.at.normal, &inner);
+    let lever = objective.free.iter().position(|key| *key == Key::SpringConstant);
+    Linear { covariance: inverse, condition, at_bound, lever }
+}
+
+/// Inverse of a normal matrix over the coordinates `inner`, zero elsewhere, and its condition number when it is
+/// scaled to a unit diagonal. Directions that nothing is known of have a variance of 1e14 of their scale, not
+/// infinity.
+pub(crate) fn inverse(normal: &DMatrix<f64>, inner: &[usize]) -> (DMatrix<f64>, f64) {
+    let (n, m) = (normal.nrows(), inner.len());
     let scale: Vec<f64> =
-        inner.iter().map(|&k| best.at.normal[(k, k)].sqrt().max(f64::MIN_POSITIVE)).collect();
+        inner.iter().map(|&k| normal[(k, k)].sqrt().max(f64::MIN_POSITIVE)).collect();
     let scaled =
-        DMatrix::from_fn(m, m, |i, j| best.at.normal[(inner[i], inner[j])] / (scale[i] * scale[j]));
+        DMatrix::from_fn(m, m, |i, j| normal[(inner[i], inner[j])] / (scale[i] * scale[j]));
     let eigen = SymmetricEigen::new(scaled);
     let largest = eigen.eigenvalues.iter().fold(0.0_f64, |m, x| m.max(*x));
     let least = eigen.eigenvalues.iter().fold(f64::INFINITY, |m, x| m.min(*x));
-    // directions that nothing is known of have a variance of 1e14 of their scale, not infinity
     let floor = 1e-14 * largest;
-    let used = objective.count();
-    let (autocorrelation, scatter) = residuals(fitted);
-    let dof = used.saturating_sub(m).max(1) as f64;
-    let chi2_dof = scatter / dof;
-    let correlated = if autocorrelation > WHITE {
-        (1.0 + autocorrelation) / (1.0 - autocorrelation.min(0.98))
-    } else {
-        1.0
-    };
-    let widened = chi2_dof.max(1.0) * correlated;
-    let mut covariance = DMatrix::zeros(n, n);
+    let mut inverse = DMatrix::zeros(n, n);
     for i in 0..m {
         for j in 0..m {
             let mut sum = 0.0;
@@ -193,59 +177,8 @@ pub fn linear(fitted: &Fitted<'_>, spring_constant_sd: f64) -> Result<Linear, Fi
                 let (v, l) = (&eigen.eigenvectors, eigen.eigenvalues[k].max(floor));
                 sum += v[(i, k)] * v[(j, k)] / l;
             }
-            covariance[(inner[i], inner[j])] = widened * sum / (scale[i] * scale[j]);
+            inverse[(inner[i], inner[j])] = sum / (scale[i] * scale[j]);
         }
     }
-    let mut by_lever = DVector::zeros(n);
-    let considered = !objective.free.contains(&Key::SpringConstant) && spring_constant_sd > 0.0;
-    if considered {
-        let mut keys = objective.free.clone();
-        keys.push(Key::SpringConstant);
-        let weight = 1.0 / objective.noise;
-        let prediction =
-            objective.model.predict(objective.curve, &fitted.branch, &p, &keys, weight);
-        let mut pull = DVector::zeros(n);
-        for i in (0..objective.used.len()).filter(|i| objective.used[*i]) {
-            let row = &prediction.by_key[i * (n + 1)..(i + 1) * (n + 1)];
-            for k in 0..n {
-                pull[k] += weight * weight * row[k] * row[n];
-            }
-        }
-        by_lever = -(&covariance * pull) / widened;
-    }
-    Ok(Linear {
-        covariance,
-        by_lever,
-        lever_sd: if considered { spring_constant_sd } else { 0.0 },
-        condition: if least > 0.0 { largest / least } else { f64::INFINITY },
-        widened,
-        chi2_dof,
-        autocorrelation,
-        at_bound,
-    })
-}
-
-/// Autocorrelation of the weighted residuals at the next sample, and their sum of squares (or of soft-L1).
-fn residuals(fitted: &Fitted<'_>) -> (f64, f64) {
-    let objective = &fitted.objective;
-    let mut first = 0;
-    let (mut product, mut square) = (0.0, 0.0);
-    for segment in &objective.curve.segments {
-        let mut last: Option<f64> = None;
-        for (i, y) in segment.force.iter().enumerate() {
-            if !objective.used[first + i] {
-                last = None;
-                continue;
-            }
-            let r = ((y - fitted.best.at.prediction.force[first + i]) / objective.noise)
-                .clamp(-4.0, 4.0);
-            if let Some(last) = last {
-                product += last * r;
-            }
-            square += r * r;
-            last = Some(r);
-        }
-        first += segment.force.len();
-    }
-    (if square > 0.0 { product / square } else { 0.0 }, fitted.best.at.chi2)
+    (inverse, if least > 0.0 { largest / least } else { f64::INFINITY })
 }

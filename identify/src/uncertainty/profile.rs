@@ -1,7 +1,7 @@
 //! Profile likelihood: the least cost with one combination of the coordinates held.
 //!
-//! Both ways from the minimum until the cost has grown by 4.5 (times what variances are widened by), or the
-//! combination has moved by a factor of [`FAR`]; then the interval is open.
+//! Both ways from the minimum until the cost has grown by 4.5, or the combination has moved by a factor of
+//! [`FAR`]; then the interval is open.
 
 use super::Quantity;
 use crate::fit::descent::{BOLD, Held, Limits, Minimum, descend};
@@ -22,7 +22,7 @@ const ENOUGH: f64 = 4.5;
 pub struct ProfilePoint {
     /// Offset of the quantity's coordinate from the estimate.
     pub offset: f64,
-    /// Growth of the cost, in the widened measure.
+    /// Growth of the cost.
     pub growth: f64,
 }
 
@@ -50,7 +50,6 @@ pub fn profile(
     minimum: &Minimum,
     quantity: Quantity,
     sd: f64,
-    widened: f64,
 ) -> Option<Profile> {
     let along = quantity.along(&objective.free)?;
     let centre = along.dot(&minimum.x);
@@ -92,7 +91,7 @@ pub fn profile(
                 step *= 0.5;
                 continue;
             }
-            let growth = (found.at.cost - minimum.at.cost) / widened;
+            let growth = found.at.cost - minimum.at.cost;
             if growth < -0.5 {
                 better = Some(found.x);
                 break;

@@ -55,6 +55,11 @@ pub fn parameters(values: [f64; 7]) -> Parameters {
     p
 }
 
+/// The true value of a quantity by its name.
+pub fn truth(p: &Parameters, key: &str) -> f64 {
+    identify::uncertainty::Quantity::of(key).unwrap().value(p)
+}
+
 impl Known {
     /// What a laboratory would ask: the lever known exactly, as it was when the curve was made.
     pub fn setup(&self) -> Setup {
