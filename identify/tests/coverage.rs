@@ -7,7 +7,7 @@
 
 mod common;
 
-use common::{Normal, fill, heights, parameters};
+use common::{Normal, fill, heights, parameters, truth};
 use identify::branch::Effort;
 use identify::data::Curve;
 use identify::fit::{Setup, objective::Prior};
@@ -67,11 +67,8 @@ impl Specimen {
         truth[Key::Tilt] = 3e-4;
         let mut normal = Normal(seed);
         // what the microscope and the calibration say has errors of its own
-        let optical = Prior {
-            key: Key::Radius,
-            value: truth[Key::Radius] * (0.03 * normal.next()).exp(),
-            sd: 0.03 * truth[Key::Radius],
-        };
+        let radius = truth[Key::Radius] * (0.03 * normal.next()).exp();
+        let optical = Prior { key: Key::Radius, value: radius, sd: 0.03 * radius };
         let nominal = truth[Key::SpringConstant] * (0.1 * normal.next()).exp();
         let mut curve = heights(self.from, self.to, 200);
         let model = Model {
@@ -87,20 +84,11 @@ impl Specimen {
         (curve, Setup::new(self.law, base, vec![optical]))
     }
 
-    fn truth(&self, key: &str) -> f64 {
-        match key {
-            "young" => self.truth.young(),
-            "thickness" => self.truth.thickness(),
-            "sqrt_chi_kb" => self.truth.force_scale(),
-            other => self.truth[Key::of(other).unwrap()],
-        }
-    }
-
     /// Whether each interval holds the truth; an open end holds everything.
     fn inside(&self, report: &Report) -> [bool; KEYS.len()] {
         KEYS.map(|key| {
             let [low, high] = report.estimate(key).unwrap().interval95;
-            let truth = self.truth(key);
+            let truth = truth(&self.truth, key);
             low.is_none_or(|low| low < truth) && high.is_none_or(|high| truth < high)
         })
     }
@@ -112,21 +100,78 @@ impl Specimen {
             let (curve, mut setup) = self.measure(seed);
             setup.start = Some(self.truth);
             let found = identify(&curve, &setup, &Profiles::WhereNeeded).unwrap();
-            for (count, inside) in count.iter_mut().zip(self.inside(&found.report)) {
+            within_priors(&found.report);
+            for ((key, count), inside) in
+                KEYS.into_iter().zip(&mut count).zip(self.inside(&found.report))
+            {
                 *count += u64::from(inside);
+                if !inside {
+                    let estimate = found.report.estimate(key).unwrap();
+                    let truth = truth(&self.truth, key);
+                    let ends = estimate.interval95.map(|end| end.map(|end| end / truth));
+                    println!("{:?} {seed}: {key} {ends:?} by {}", self.law, estimate.method);
+                }
             }
         }
         count
     }
+
+    /// A hundred seeds. Of honest intervals 95 ± 2.2 of them hold the truth (binomial).
+    fn cover(&self) {
+        let inside = self.count(0..100);
+        for (key, inside) in KEYS.into_iter().zip(inside) {
+            println!("{:?}: {key} {inside}/100", self.law);
+        }
+        for (key, inside) in KEYS.into_iter().zip(inside) {
+            assert!((90..=98).contains(&inside), "{key}: {inside} of 100");
+        }
+    }
 }
 
-/// Five seeds of each shell: at a coverage of 95 % fewer than 80 of 100 are rare, though quantities of one fit
-/// are not independent. It finds intervals that lie grossly, no more.
+/// What was known beforehand is not forgotten: no interval is wider than its prior alone.
+fn within_priors(report: &Report) {
+    for key in ["radius", "spring_constant"] {
+        let estimate = report.estimate(key).unwrap();
+        let prior = estimate.prior.unwrap();
+        let [low, high] = estimate.interval95.map(|end| end.unwrap());
+        let widest = 2.0 * 1.96 * prior.sd / prior.value;
+        assert!((high / low).ln() < 1.001 * widest, "{key}: {low:e} to {high:e}, {prior:?}");
+    }
+}
+
+/// Three seeds of each shell: it finds intervals that lie grossly, no more. Of an honest 95 % fewer than 24 of
+/// 30 are rare, though the quantities of one fit are not independent.
 #[test]
 fn a_few_seeds_hold_the_truth() {
     for specimen in [hard(), soft()] {
-        let inside = specimen.count(0..5);
-        let all: u64 = inside.iter().sum();
-        assert!(all >= 40, "{:?}: {inside:?} of 5", specimen.law);
+        let inside = specimen.count(0..3);
+        assert!(inside.iter().sum::<u64>() >= 24, "{:?}: {inside:?} of 3", specimen.law);
+    }
+}
+
+#[test]
+#[ignore = "slow: 100 fits, five minutes"]
+fn a_hundred_hard_shells_are_covered() {
+    hard().cover();
+}
+
+#[test]
+#[ignore = "slow: 100 fits, five minutes"]
+fn a_hundred_soft_shells_are_covered() {
+    soft().cover();
+}
+
+/// What lets the others start at the truth.
+#[test]
+fn a_grid_finds_the_minimum_that_a_start_at_the_truth_does() {
+    let specimen = hard();
+    let (curve, mut setup) = specimen.measure(0);
+    let by_grid = identify(&curve, &setup, &Profiles::None).unwrap();
+    setup.start = Some(specimen.truth);
+    let by_truth = identify(&curve, &setup, &Profiles::None).unwrap();
+    for key in KEYS {
+        let [grid, truth] = [&by_grid, &by_truth].map(|found| found.report.estimate(key).unwrap());
+        let off = (grid.value - truth.value).abs() / truth.sd.unwrap();
+        assert!(off < 0.05, "{key}: {:e} {:e}, {off} sd", grid.value, truth.value);
     }
 }
