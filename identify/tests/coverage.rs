@@ -2,7 +2,7 @@
 //! tests draw themselves. The intervals are those that `arclen fit` reports when nothing is asked for: of the
 //! joint fit, from the profile where one is needed and from the covariance where not.
 //!
-//! The descents start at the truth. A grid finds the same minimum, later: the last test sees to it.
+//! The descents start at the truth. That a grid finds the same minimum, later, the last tests see to.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
 mod common;
@@ -161,17 +161,39 @@ fn a_hundred_soft_shells_are_covered() {
     soft().cover();
 }
 
-/// What lets the others start at the truth.
-#[test]
-fn a_grid_finds_the_minimum_that_a_start_at_the_truth_does() {
-    let specimen = hard();
-    let (curve, mut setup) = specimen.measure(0);
+/// What lets the others start at the truth: by how many standard deviations at most the fit from a grid of starts
+/// ends elsewhere.
+fn apart(specimen: &Specimen, seed: u64) -> f64 {
+    let (curve, mut setup) = specimen.measure(seed);
     let by_grid = identify(&curve, &setup, &Profiles::None).unwrap();
     setup.start = Some(specimen.truth);
     let by_truth = identify(&curve, &setup, &Profiles::None).unwrap();
-    for key in KEYS {
+    let off = KEYS.map(|key| {
         let [grid, truth] = [&by_grid, &by_truth].map(|found| found.report.estimate(key).unwrap());
-        let off = (grid.value - truth.value).abs() / truth.sd.unwrap();
-        assert!(off < 0.05, "{key}: {:e} {:e}, {off} sd", grid.value, truth.value);
+        (grid.value - truth.value).abs() / truth.sd.unwrap()
+    });
+    let most = off.into_iter().fold(0.0, f64::max);
+    let chi2 = [&by_grid, &by_truth].map(|found| found.report.quality.chi2_dof);
+    println!("{:?} {seed}: {most:.3} sd, chi2/dof {chi2:?}", specimen.law);
+    most
+}
+
+/// A tenth of a standard deviation is what descents are made for.
+#[test]
+fn a_grid_finds_the_minimum_that_a_start_at_the_truth_does() {
+    for specimen in [hard(), soft()] {
+        let apart = apart(&specimen, 0);
+        assert!(apart < 0.1, "{:?}: {apart} sd", specimen.law);
+    }
+}
+
+/// The same minimum, not a second one. Where the cost is as flat as its own numerical error, which differs with the
+/// mesh, the two ends can be a third of a standard deviation apart.
+#[test]
+#[ignore = "slow: 40 fits, three minutes"]
+fn grids_find_the_minima_that_starts_at_the_truth_do() {
+    for specimen in [hard(), soft()] {
+        let apart: Vec<f64> = (0..10).map(|seed| apart(&specimen, seed)).collect();
+        assert!(apart.iter().all(|apart| *apart < 0.5), "{:?}: {apart:?}", specimen.law);
     }
 }
