@@ -1,7 +1,7 @@
 //! Branch points of a stiff operator: met as far as the rounding of the Jacobian's entries allows,
 //! with an estimate that says so, a normal form and the counts on both sides.
 
-use super::{Entries, trace_with};
+use super::crossings::{Entries, trace_with};
 use continuation::linalg::{Band, Dense, Sparse};
 use continuation::{
     Detail, EvalError, EventKind, ParamId, Parameter, Problem, Settings, Shape, Stability,
