@@ -38,6 +38,25 @@ fn columns(file: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     (names, rows.collect())
 }
 
+/// The picture draws what the path is unstable to as its table says, and what was not counted.
+#[test]
+fn the_picture_shows_states_that_other_modes_destroy() {
+    let place = tempfile::tempdir().unwrap();
+    for (scan, others, left_out) in [("full", true, false), ("axisymmetric", false, true)] {
+        let scan = format!("stability.scan={scan}");
+        let (output, json) =
+            cycle(place.path(), "fig16", &["path.start=1.2", "path.end=0.9", &scan]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let counted = json["stability"]["unstable_states"].as_u64().is_some_and(|n| n > 0);
+        assert_eq!(counted, others);
+        let picture = fs::read_to_string(place.path().join("o/loop.svg")).unwrap();
+        let shows = |words: &str| picture.contains(words);
+        assert!(shows("unstable to axisymmetric modes"));
+        assert_eq!(shows("unstable to asymmetric modes only"), others, "{scan}");
+        assert_eq!(shows("asymmetric modes not examined"), left_out, "{scan}");
+    }
+}
+
 #[test]
 fn a_grip_s_cycle_leaves_its_files_and_closes() {
     let place = tempfile::tempdir().unwrap();

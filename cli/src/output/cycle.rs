@@ -126,7 +126,7 @@ pub(crate) struct PathModes {
 }
 
 impl PathModes {
-    fn is_unstable(&self) -> bool {
+    pub(crate) fn is_unstable(&self) -> bool {
         self.modes > 0 || self.antisymmetric.is_some_and(|n| n > 0)
     }
 

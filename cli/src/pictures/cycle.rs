@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::chart::{Chart, DrawError, Entry, Line, Stroke};
 use super::data::{Curve, Shape, drawable};
-use super::draw::{DISTANCE, FORCE, WIDE, curve_lines, shapes, values};
+use super::draw::{DISTANCE, FORCE, WIDE, curve_lines, shapes, unstable_entries, values};
 use super::palette::{Color, FAINT, of_state};
 use crate::case::document::shown;
 
@@ -96,20 +96,16 @@ fn hysteresis(cycle: &CyclePictures) -> Result<String, DrawError> {
     for (from, to) in &cycle.jumps {
         arrow(*from, *to, leap, true);
     }
-    let line = |color, dashed, label: &str| {
-        let stroke = if dashed { Stroke::Dashed } else { Stroke::Solid };
-        Entry::Line { color, stroke, label: label.to_owned() }
+    let solid = |color, label: &str| {
+        let (stroke, label) = (Stroke::Solid, label.to_owned());
+        Entry::Line { color, stroke, label }
     };
-    let mut legend = vec![line(way_in, false, "approach"), line(way_out, false, "retract")];
+    let mut legend = vec![solid(way_in, "approach"), solid(way_out, "retract")];
     if !cycle.jumps.is_empty() {
-        legend.push(line(FAINT, false, "not visited"));
+        legend.push(solid(FAINT, "not visited"));
+        legend.push(solid(leap, "jump"));
     }
-    if !cycle.jumps.is_empty() {
-        legend.push(line(leap, false, "jump"));
-    }
-    if cycle.complete.has_unstable() {
-        legend.push(line(FAINT, true, "unstable"));
-    }
+    legend.extend(unstable_entries(&all, FAINT));
     let marks = cycle.complete.marks.clone();
     if !marks.is_empty() {
         legend.push(Entry::Marker { kind: "fold".to_owned() });

@@ -224,17 +224,28 @@ fn state_entry(at: usize, label: &str, stability: Stability) -> Entry {
 
 /// What lines that are not solid mean, where there are any, and what no line tells.
 fn stability_entries(curves: &[Curve], color: Color) -> Vec<Entry> {
-    let examined = curves.first().map(|curve| curve.examined).unwrap_or_default();
+    let mut entries = Vec::new();
+    // a single curve is its own sample
+    if color == FAINT && curves.iter().any(Curve::has_unstable) {
+        let label = examined(curves).stable().to_owned();
+        entries.push(Entry::Line { color, stroke: Stroke::Solid, label });
+    }
+    entries.extend(unstable_entries(curves, color));
+    entries
+}
+
+fn examined(curves: &[Curve]) -> Examined {
+    curves.first().map(|curve| curve.examined).unwrap_or_default()
+}
+
+/// The same without the stable ones.
+pub(super) fn unstable_entries(curves: &[Curve], color: Color) -> Vec<Entry> {
+    let examined = examined(curves);
     let own = match examined {
         Examined::All => "unstable",
         _ => "unstable to axisymmetric modes",
     };
     let mut entries = Vec::new();
-    // a single curve is its own sample
-    if color == FAINT && curves.iter().any(Curve::has_unstable) {
-        let label = examined.stable().to_owned();
-        entries.push(Entry::Line { color, stroke: Stroke::Solid, label });
-    }
     let lines =
         [(Stability::Unstable, own), (Stability::Asymmetric, "unstable to asymmetric modes only")];
     for (stability, label) in lines {

@@ -13,7 +13,7 @@ use crate::output::{
     CycleResult, FoldRecord, JumpRecord, MaxwellRecord, PathModes, PathRow, ReportedCycle,
     StretchRecord, Table,
 };
-use crate::pictures::{Curve, CyclePictures, Mark, Shape};
+use crate::pictures::{Curve, CyclePictures, Examined, Mark, Shape};
 use continuation::{EventKind, Problem, Settings, Tracer};
 use shell_contact::device::{
     Balance, Cycle, CyclePoint, CycleSettings, Direction, Loading, RelaxationSettings, balance,
@@ -207,6 +207,11 @@ impl Travelled<'_> {
         let branch = &traced.branch;
         let row = |(step, point): (usize, &CyclePoint)| path_row(step, point, counted(point));
         let points: Vec<PathRow> = cycle.points.iter().enumerate().map(row).collect();
+        let examined = match (case.stability, self.both_parities) {
+            (StabilityCase::Full { .. }, _) => Examined::AxisymmetricAndOthers,
+            (_, true) => Examined::AxisymmetricBothParities,
+            (_, false) => Examined::Axisymmetric,
+        };
         let pull_off = cycle.pull_off().map(|point| (point.z0, point.force));
         let (mut stopped, mut detail) = (cycle.stopped.reason, cycle.stopped.detail.clone());
         if stopped.is_complete() && !branch.stopped.reason.is_complete() {
@@ -233,7 +238,7 @@ impl Travelled<'_> {
             stopped_detail: detail,
             newton_iterations: cycle.newton_iterations + branch.statistics.newton_iterations,
             seconds: clock.elapsed().as_secs_f64(),
-            pictures: pictures(&case.name, traced, cycle, shape),
+            pictures: pictures(&case.name, traced, (cycle, &points), examined, shape),
             reported: self.reported,
             branch: self.branch,
             points,
@@ -350,11 +355,13 @@ fn unstable(traced: &ContactBranch) -> Vec<StretchRecord> {
 fn pictures(
     title: &str,
     traced: &ContactBranch,
-    cycle: &Cycle,
+    (cycle, path): (&Cycle, &[PathRow]),
+    examined: Examined,
     shape: &dyn Fn(&CyclePoint) -> Option<Shape>,
 ) -> CyclePictures {
     let branch = &traced.branch;
-    let mut complete = Curve { label: "complete branch".to_owned(), ..Curve::default() };
+    let labelled = |label: &str| Curve { label: label.to_owned(), examined, ..Curve::default() };
+    let mut complete = labelled("complete branch");
     for (index, point) in branch.points.iter().enumerate() {
         let at = row(traced, index, point);
         complete.x.push(at.z0);
@@ -366,16 +373,18 @@ fn pictures(
         complete.marks.push(Mark { kind: "fold".to_owned(), x, y });
     }
     let way = |direction: Direction| {
-        let mut curve = Curve { label: word(direction).to_owned(), ..Curve::default() };
+        let mut curve = labelled(word(direction));
         for (k, point) in cycle.points.iter().enumerate() {
             if cycle.jumps.iter().any(|jump| jump.after == Some(k)) {
                 // jumps are arrows, not lines
                 curve.x.push(f64::NAN);
                 curve.y.push(f64::NAN);
+                curve.asymmetric.push(false);
             }
             if point.direction == direction {
                 curve.x.push(point.z0);
                 curve.y.push(point.force);
+                curve.asymmetric.push(path[k].modes.is_some_and(|modes| modes.is_unstable()));
             }
         }
         curve
