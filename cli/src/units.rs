@@ -18,6 +18,8 @@ pub(crate) enum Dimension {
     Moment,
     /// Newtons.
     Force,
+    /// Metres per volt: how far a lever's end moves for a volt of the detector.
+    Sensitivity,
 }
 
 /// How a unit relates to the SI unit of its dimension.
@@ -29,7 +31,7 @@ enum Factor {
     Times(f64),
 }
 
-use Dimension::{Force, Length, Moment, Pressure, Tension};
+use Dimension::{Force, Length, Moment, Pressure, Sensitivity, Tension};
 use Factor::{Ten, Times};
 
 /// Every unit that is understood: the normal spelling, its dimension, its factor.
@@ -58,6 +60,10 @@ const UNITS: &[(&str, Dimension, Factor)] = &[
     ("uN", Force, Ten(-6)),
     ("nN", Force, Ten(-9)),
     ("pN", Force, Ten(-12)),
+    ("m/V", Sensitivity, Ten(0)),
+    ("um/V", Sensitivity, Ten(-6)),
+    ("nm/V", Sensitivity, Ten(-9)),
+    ("nm/mV", Sensitivity, Ten(-6)),
 ];
 
 impl Dimension {
@@ -69,6 +75,7 @@ impl Dimension {
             Tension => "0.05 N/m",
             Moment => "3e-16 N m",
             Force => "50 pN",
+            Sensitivity => "60 nm/V",
         }
     }
 
@@ -88,6 +95,7 @@ impl fmt::Display for Dimension {
             Tension => "tension",
             Moment => "bending moment",
             Force => "force",
+            Sensitivity => "sensitivity",
         })
     }
 }
@@ -263,6 +271,8 @@ mod tests {
             assert_eq!(si(&format!("3e-16 {unit}"), Moment), 3e-16, "{unit}");
         }
         assert_eq!(si("+.5E2 aJ", Moment), 50e-18);
+        assert_eq!(si("60 nm/V", Sensitivity), 60e-9);
+        assert_eq!(si("0.06 nm / mV", Sensitivity), 60e-9);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What can go wrong.
 
+use crate::data::jpk::ArchiveError;
 use continuation::{EvalError, TraceError};
 use shell_contact::ParameterError;
 
@@ -120,6 +121,14 @@ pub enum DataError {
         /// What to do.
         remedy: &'static str,
     },
+    /// A JPK archive that gives no curve.
+    #[error("{file}: {why}")]
+    Archive {
+        /// The file.
+        file: String,
+        /// What is wrong.
+        why: Box<ArchiveError>,
+    },
     /// Bytes that are no text.
     #[error("{file}, line {line}: not UTF-8 text; save the curve as UTF-8")]
     NotText {
@@ -210,14 +219,16 @@ pub enum DataError {
     },
     /// Volts.
     #[error(
-        "{file}: the column \"{column}\" is in volts; a force needs the sensitivity of the deflection and \
-         the spring constant: convert it in the instrument's program or with afmformats"
+        "{file}: the column \"{column}\" is in volts; a force needs {missing} (your values), or in the file of \
+         known values"
     )]
     Volts {
         /// The file.
         file: String,
         /// The column.
         column: String,
+        /// What is not known, and how to give it.
+        missing: &'static str,
     },
     /// A field that is no number.
     #[error(

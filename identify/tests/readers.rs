@@ -72,6 +72,63 @@ fn a_decimal_comma_is_told() {
 }
 
 #[test]
+fn volts_with_the_sensitivity_and_spring_constant_of_the_lever() {
+    let lever = |sensitivity, spring_constant| Layout {
+        sensitivity,
+        spring_constant,
+        force_column: Some("deflection".into()),
+        ..Layout::default()
+    };
+    for (header, volts) in [("deflection [V]", 1.0), ("deflection [mV]", 1e-3)] {
+        let text = ramp(&format!("segment,height [nm],{header}"), ",", |h, f| format!("{h},{f}"));
+        let known = lever(Some(6e-8), Some(0.05));
+        let curve = read("a.csv", text.as_bytes(), &known).unwrap();
+        let wanted = 7.0 * volts * 6e-8 * 0.05;
+        assert!((curve.segments[0].force[7] / wanted - 1.0).abs() < 1e-14, "{header}");
+        for (known, words) in [
+            (lever(None, Some(0.05)), "needs the sensitivity"),
+            (lever(Some(6e-8), None), "needs the spring constant"),
+            (lever(None, None), "needs sensitivity and spring constant"),
+        ] {
+            let message = refused("a.csv", &text, &known);
+            assert!(message.contains(header) && message.contains(words), "{message}");
+        }
+    }
+    // a height stays in volts whatever the lever is
+    let text = ramp("segment,height [V],force [nN]", ",", |h, f| format!("{h},{f}"));
+    let known = Layout { force_column: None, ..lever(Some(6e-8), Some(0.05)) };
+    assert!(refused("a.csv", &text, &known).contains("data.height_unit = V: must be one of m"));
+}
+
+#[test]
+fn of_two_heights_the_measured_one_is_taken_and_told() {
+    let header = "segment,height (piezo) [nm],height (measured) [nm],force [nN]";
+    let text = ramp(header, ",", |h, f| format!("{},{h},{f}", 0.6 * h));
+    let curve = read("a.csv", text.as_bytes(), &Layout::default()).unwrap();
+    assert!((curve.segments[0].height[1] - 1.99e-6).abs() < 1e-18);
+    assert!(
+        curve.notes[0].contains("data.height_column=\"height (piezo) [nm]\""),
+        "{:?}",
+        curve.notes
+    );
+    let told = Layout { height_column: Some("height (piezo)".into()), ..Layout::default() };
+    let curve = read("a.csv", text.as_bytes(), &told).unwrap();
+    assert!((curve.segments[0].height[1] - 0.6 * 1.99e-6).abs() < 1e-18);
+    assert!(curve.notes.is_empty());
+}
+
+#[test]
+fn forces_of_a_tab_follow_the_spring_constant_that_is_known() {
+    let known = Layout { spring_constant: Some(2.4), ..Layout::default() };
+    let curve = read("a.tab", TAB.as_bytes(), &known).unwrap();
+    assert_eq!(curve.spring_constant, Some(1.2));
+    assert_eq!(curve.segments[0].force[0], 2.0 * -3.2281651e-09);
+    let same = Layout { spring_constant: Some(1.2), ..Layout::default() };
+    let curve = read("a.tab", TAB.as_bytes(), &same).unwrap();
+    assert_eq!(curve.segments[0].force[0], -3.2281651e-09);
+}
+
+#[test]
 fn what_cannot_be_is_refused_with_its_place() {
     let none = Layout::default();
     let good = ramp("segment,height_nm,force_nN", ",", |h, f| format!("{h},{f}"));
@@ -87,7 +144,7 @@ fn what_cannot_be_is_refused_with_its_place() {
         ),
         ("a.csv", "segment,height_nm,force_nN\n".to_owned(), "no samples"),
         ("a.tab", "1\t2\n".to_owned(), "no header"),
-        ("a.jpk-force", good.clone(), "JPK archives are not read"),
+        ("a.jpk-force", good.clone(), "no readable JPK archive"),
         ("a.ibw", good.clone(), "format \".ibw\" is not known"),
     ] {
         let message = refused(name, &text, &none);

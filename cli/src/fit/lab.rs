@@ -11,7 +11,8 @@ use identify::{Key, LawName, Parameters};
 use std::path::Path;
 
 const TABLES: [&str; 4] = ["instrument", "shell", "physical", "data"];
-const INSTRUMENT: &[&str] = &["spring_constant", "spring_constant_sd", "contacts", "noise"];
+const INSTRUMENT: &[&str] =
+    &["spring_constant", "spring_constant_sd", "sensitivity", "contacts", "noise"];
 const SHELL: &[&str] = &["law", "poisson", "poisson_sd", "b", "b_sd"];
 const DATA: &[&str] = &[
     "force_column",
@@ -23,7 +24,10 @@ const DATA: &[&str] = &[
     "separator",
     "force_sign",
     "height",
+    "curve",
 ];
+/// Largest number of a curve in a map: more than any instrument makes.
+const LAST_CURVE: i64 = 100_000_000;
 /// Keys of `[physical]` that are fitted, with their dimension; each may have a `_sd`.
 const PHYSICAL: [(Key, Dimension); 7] = [
     (Key::Radius, Dimension::Length),
@@ -154,6 +158,9 @@ fn read(reader: &Reader, root: Section<'_>) -> Option<Lab> {
         lab.take(key, value.map(|v| v.si), sd.map(|v| v.si));
     }
     lab.layout = layout(reader, table("data", DATA));
+    let sensitivity = reader.quantity(instrument, "sensitivity", Dimension::Sensitivity, POSITIVE);
+    lab.layout.sensitivity = sensitivity.map(|sensitivity| sensitivity.si);
+    lab.layout.spring_constant = Some(lab.base[Key::SpringConstant]).filter(|k| k.is_finite());
     Some(lab)
 }
 
@@ -193,6 +200,10 @@ fn layout(reader: &Reader, data: Section<'_>) -> Layout {
         }),
         force_sign: reader.number(data, "force_sign", sign),
         height_rises: reader.word(data, "height", &["falls", "rises"]).map(|w| w == "rises"),
+        curve: reader.count(data, "curve", 0, LAST_CURVE),
+        // of the table instrument
+        sensitivity: None,
+        spring_constant: None,
     }
 }
 

@@ -136,7 +136,7 @@ pub(crate) fn fit_file(
     {
         let text = format!(
             "the curve's file states a spring constant of {stated} N/m; {known} N/m is taken, as the \
-             file of known values says"
+             file of known values says, and forces are those of the same deflections"
         );
         best.report.warnings.push(Warning { code: "spring-constant-differs", text });
     }

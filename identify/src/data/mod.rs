@@ -1,5 +1,6 @@
 //! Measured curves: samples by segment, in SI units, and the noise of their force.
 
+pub mod jpk;
 pub mod read;
 mod table;
 

@@ -1,7 +1,7 @@
-//! Files of curves: CSV, and the `.tab` of afmformats.
+//! Files of curves: CSV, the `.tab` of afmformats, and JPK's archives.
 
-use super::Curve;
-use super::table::{Layout, Rows, curve};
+use super::table::{Layout, Rows, check, curve};
+use super::{Curve, jpk};
 use crate::error::DataError;
 use serde_json::Value;
 
@@ -17,19 +17,18 @@ pub fn read(name: &str, bytes: &[u8], layout: &Layout) -> Result<Curve, DataErro
     let extension = name.rsplit_once('.').map(|(_, e)| e.to_lowercase()).unwrap_or_default();
     match extension.as_str() {
         "csv" | "txt" | "tsv" | "dat" | "tab" => {}
-        "jpk-force" | "jpk-force-map" | "jpk-qi-data" => {
-            return Err(DataError::Format {
-                file,
-                why: "JPK archives are not read here".to_owned(),
-                remedy: "convert it with the Python package afmformats: \
-                         afmformats.load_data(path)[0].export_data(\"curve.tab\")",
-            });
+        jpk if jpk::ENDINGS.contains(&jpk) => {
+            return match jpk::curve(bytes, layout) {
+                Ok(curve) => check(Curve { name: file, ..curve }),
+                Err(why) => Err(DataError::Archive { file, why: Box::new(why) }),
+            };
         }
         other => {
             return Err(DataError::Format {
                 file,
                 why: format!("the format \".{other}\" is not known"),
-                remedy: "give a .csv or a .tab; afmformats writes .tab from most instruments' files",
+                remedy: "give a .csv, .tab or .jpk-force; the Python package afmformats writes .tab from most \
+                         instruments' files",
             });
         }
     }
@@ -69,8 +68,23 @@ fn tab(name: &str, text: &str, layout: &Layout) -> Result<Curve, DataError> {
         let metadata: Value = serde_json::from_str(&json)
             .map_err(|error| DataError::Metadata { file: file(), why: error.to_string() })?;
         curve.spring_constant = metadata.get("spring constant").and_then(Value::as_f64);
+        rescale(&mut curve, layout.spring_constant);
+        let stated = metadata.get("point count").and_then(Value::as_u64);
+        if let Some(stated) = stated.filter(|stated| *stated != curve.len() as u64) {
+            let found = curve.len();
+            curve.notes.push(format!("the metadata state {stated} samples; the file has {found}"));
+        }
     }
     Ok(curve)
+}
+
+/// Forces of the same deflections with the spring constant that is known, where the file states another.
+fn rescale(curve: &mut Curve, known: Option<f64>) {
+    if let (Some(stated), Some(known)) = (curve.spring_constant, known) {
+        let forces = curve.segments.iter_mut().flat_map(|s| s.force.iter_mut());
+        // equal constants leave the bits as they are
+        forces.filter(|_| known != stated).for_each(|f| *f *= known / stated);
+    }
 }
 
 /// A table with one line of headers; lines that start with `#` are left out.

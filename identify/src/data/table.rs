@@ -24,12 +24,19 @@ pub struct Layout {
     pub force_sign: Option<f64>,
     /// Whether the height rises on approach in the file.
     pub height_rises: Option<bool>,
+    /// Sensitivity of the deflection, m/V; it replaces that of the file.
+    pub sensitivity: Option<f64>,
+    /// Spring constant of the lever, N/m; it replaces that of the file where forces come from deflections.
+    pub spring_constant: Option<f64>,
+    /// Which curve of a file that holds several.
+    pub curve: Option<usize>,
 }
 
 /// What of a column's name says that it is the force, in the order in which they are preferred.
 const FORCE: [&str; 2] = ["force", "kraft"];
-/// The same of the height of the piezo; a measured height beside it is another quantity.
-const HEIGHT: [&str; 4] = ["height_piezo", "height (piezo)", "piezo", "height"];
+/// The same of the height over which the head moves: that of its sensor before that of the piezo's voltage.
+const HEIGHT: [&str; 6] =
+    ["height (measured)", "height_measured", "height_piezo", "height (piezo)", "piezo", "height"];
 /// The same of the segment.
 const SEGMENT: [&str; 2] = ["segment", "direction"];
 
@@ -43,13 +50,16 @@ const FORCES: [(&str, f64); 5] =
 const LENGTHS: [(&str, f64); 5] =
     [("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9), ("pm", 1e-12)];
 
+/// Units of a deflection that a sensitivity makes a length, in volts.
+const VOLTS: [(&str, f64); 2] = [("V", 1.0), ("mV", 1e-3)];
+
 /// A column's name without the unit at its end: `force [nN]`, `force (nN)`, `force_nN`, `force / nN`.
 fn split(header: &str) -> (String, Option<String>) {
     let header = header.trim().trim_matches('"').trim();
     let plain = |unit: &str| unit.replace(['\u{b5}', '\u{3bc}'], "u").trim().to_owned();
     let known = |unit: &str| {
         let unit = plain(unit);
-        FORCES.iter().chain(&LENGTHS).any(|(name, _)| *name == unit) || unit == "V"
+        FORCES.iter().chain(&LENGTHS).chain(&VOLTS).any(|(name, _)| *name == unit)
     };
     for (open, close) in [('[', "]"), ('(', ")")] {
         if let Some((name, rest)) = header.rsplit_once(open)
@@ -119,34 +129,65 @@ fn find(
     Ok(None)
 }
 
-fn factor(
+/// The unit of a column: told, in its name, or that of the format.
+fn unit(
     file: &str,
     column: &Column,
     told: Option<&String>,
     units: &[(&str, f64)],
     key: &'static str,
     si: bool,
-) -> Result<f64, DataError> {
-    let allowed = || units.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+) -> Result<String, DataError> {
     let stated = told.map(|u| u.replace(['\u{b5}', '\u{3bc}'], "u").trim().to_owned());
-    let unit = match stated.or_else(|| column.unit.clone()) {
-        Some(unit) => unit,
-        None if si => units[0].0.to_owned(),
-        None => {
-            return Err(DataError::NoUnit {
-                file: file.to_owned(),
-                key,
-                column: column.header.clone(),
-                allowed: allowed(),
-            });
+    match stated.or_else(|| column.unit.clone()) {
+        Some(unit) => Ok(unit),
+        None if si => Ok(units[0].0.to_owned()),
+        None => Err(DataError::NoUnit {
+            file: file.to_owned(),
+            key,
+            column: column.header.clone(),
+            allowed: names(units),
+        }),
+    }
+}
+
+fn names(units: &[(&str, f64)]) -> String {
+    units.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+}
+
+fn factor(
+    file: &str,
+    unit: &str,
+    units: &[(&str, f64)],
+    key: &'static str,
+) -> Result<f64, DataError> {
+    units.iter().find(|(name, _)| *name == unit).map(|(_, factor)| *factor).ok_or_else(|| {
+        let (file, unit) = (file.to_owned(), unit.to_owned());
+        DataError::Unit { file, key, unit, allowed: names(units) }
+    })
+}
+
+/// What makes newtons of a column of forces, or of volts where the lever is known.
+fn newtons(file: &str, column: &Column, layout: &Layout, si: bool) -> Result<f64, DataError> {
+    const KEY: &str = "data.force_unit";
+    let unit = unit(file, column, layout.force_unit.as_ref(), &FORCES, KEY, si)?;
+    let Some((_, volt)) = VOLTS.iter().find(|(name, _)| *name == unit) else {
+        return factor(file, &unit, &[&FORCES[..], &VOLTS[..]].concat(), KEY);
+    };
+    let missing = match (layout.sensitivity, layout.spring_constant) {
+        (Some(sensitivity), Some(stiffness)) => return Ok(volt * sensitivity * stiffness),
+        (None, Some(_)) => {
+            "the sensitivity of the deflection: --set instrument.sensitivity=\"60 nm/V\""
+        }
+        (Some(_), None) => {
+            "the spring constant of the lever: --set instrument.spring_constant=\"0.08 N/m\""
+        }
+        (None, None) => {
+            "sensitivity and spring constant of the lever: --set instrument.sensitivity=\"60 nm/V\" --set \
+             instrument.spring_constant=\"0.08 N/m\""
         }
     };
-    if unit == "V" {
-        return Err(DataError::Volts { file: file.to_owned(), column: column.header.clone() });
-    }
-    units.iter().find(|(name, _)| *name == unit).map(|(_, factor)| *factor).ok_or_else(|| {
-        DataError::Unit { file: file.to_owned(), key, unit: unit.clone(), allowed: allowed() }
-    })
+    Err(DataError::Volts { file: file.to_owned(), column: column.header.clone(), missing })
 }
 
 /// Rows of a table: line number in the file, and its fields.
@@ -175,14 +216,24 @@ pub(super) fn curve(rows: &Rows<'_>, layout: &Layout) -> Result<Curve, DataError
         .ok_or_else(|| missing("data.height_column", &HEIGHT))?;
     let segment =
         find(file, headers, layout.segment_column.as_ref(), &SEGMENT, "data.segment_column")?;
-    let force_unit = layout.force_unit.as_ref();
-    let height_unit = layout.height_unit.as_ref();
-    let si = rows.si;
-    let to_newton = factor(file, &force, force_unit, &FORCES, "data.force_unit", si)?;
-    let to_metre = factor(file, &height, height_unit, &LENGTHS, "data.height_unit", si)?;
+    let to_newton = newtons(file, &force, layout, rows.si)?;
+    let key = "data.height_unit";
+    let to_metre = unit(file, &height, layout.height_unit.as_ref(), &LENGTHS, key, rows.si)?;
+    let to_metre = factor(file, &to_metre, &LENGTHS, key)?;
     let sign = layout.force_sign.unwrap_or(1.0);
     let turn = if layout.height_rises == Some(true) { -1.0 } else { 1.0 };
     let mut curve = Curve { name: file.to_owned(), ..Curve::default() };
+    if layout.height_column.is_none()
+        && let Some(other) = headers
+            .iter()
+            .map(|h| h.trim())
+            .find(|h| HEIGHT.contains(&split(h).0.as_str()) && *h != height.header)
+    {
+        curve.notes.push(format!(
+            "of two heights \"{}\" is taken; --set data.height_column=\"{other}\" takes the other",
+            height.header
+        ));
+    }
     for (line, fields) in &rows.rows {
         let number = |column: &Column| -> Result<f64, DataError> {
             let text = fields.get(column.at).map_or("", |f| f.trim());
@@ -255,7 +306,7 @@ fn divide(curve: &mut Curve) {
 }
 
 /// Checks that heights fall on approach and rise on retract, and that forces are of contact.
-fn check(mut curve: Curve) -> Result<Curve, DataError> {
+pub(super) fn check(mut curve: Curve) -> Result<Curve, DataError> {
     let file = curve.name.clone();
     if curve.is_empty() {
         return Err(DataError::Empty { file });
