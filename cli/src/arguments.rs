@@ -164,7 +164,7 @@ pub(crate) struct MapArguments {
 /// Which curves, what is known of them, and what to do with their fits.
 #[derive(Debug, Args)]
 pub(crate) struct FitArguments {
-    /// Measured curves: .csv, .jpk-force (also maps, with data.curve), or afmformats' .tab
+    /// Measured curves: .csv, .jpk-force, maps (.jpk-force-map, .jpk-qi-data), or afmformats' .tab
     #[arg(value_name = "CURVE", required_unless_present = "plan")]
     pub(crate) curves: Vec<PathBuf>,
     /// What the laboratory knows: the tables instrument, shell, physical and data

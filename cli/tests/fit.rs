@@ -1,6 +1,11 @@
 //! `arclen fit`: files, exit codes, and what a wrong input is told.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
+#[path = "../../identify/tests/archives/mod.rs"]
+#[allow(dead_code, reason = "other tests use more of it")]
+mod archives;
+
+use archives::{Archive, Common, Samples};
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -103,4 +108,95 @@ fn wrong_inputs_are_named_and_nothing_is_created() {
         assert!(words(&output).contains(expected), "{more:?}: {}", words(&output));
         assert!(!folder.path().join("out").exists(), "{more:?}");
     }
+}
+
+/// The curve of `CURVE` as an archive of JPK: integers of 4 bytes, 0.1 uV of deflection and 2 fm of height to a count.
+fn archive() -> Archive {
+    const SENSITIVITY: f64 = 6e-8;
+    let (volt, metre, stiffness) = (1e-7, 2e-15, 1.2);
+    let mut archive = Archive::new(Common::Shared);
+    archive.encode(Samples::SignedInteger, false);
+    for (channel, multiplier) in [("vDeflection", volt), ("measuredHeight", metre)] {
+        archive.set(channel, "encoder.scaling.multiplier", &format!("{multiplier:e}"));
+        archive.set(channel, "encoder.scaling.offset", "0");
+    }
+    archive.conversion("vDeflection", "distance", SENSITIVITY, 0.0);
+    archive.conversion("vDeflection", "force", stiffness, 0.0);
+    archive.conversion("measuredHeight", "nominal", 1.0, 8e-6);
+    archive.remove_channel("height");
+    let text = std::fs::read_to_string(CURVE).unwrap();
+    let rows = || text.lines().filter(|line| !line.starts_with('#'));
+    for (segment, name) in ["False", "True"].into_iter().enumerate() {
+        let of = |column: usize, count: f64, offset: f64| -> Vec<i64> {
+            rows()
+                .map(|row| row.split('\t').collect::<Vec<_>>())
+                .filter(|row| row[2] == name)
+                .map(|row| ((row[column].parse::<f64>().unwrap() - offset) / count).round() as i64)
+                .collect()
+        };
+        archive.raw(segment, "vDeflection", &of(0, volt * SENSITIVITY * stiffness, 0.0));
+        archive.raw(segment, "measuredHeight", &of(1, metre, 8e-6));
+    }
+    archive
+}
+
+#[test]
+fn an_archive_gives_the_shell_that_its_table_gives() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("lab.toml"), LAB).unwrap();
+    std::fs::write(folder.path().join("a.jpk-force"), archive().zip()).unwrap();
+    let mut uncalibrated = archive();
+    uncalibrated.undefine("vDeflection", "distance");
+    uncalibrated.undefine("vDeflection", "force");
+    std::fs::write(folder.path().join("volts.jpk-force"), uncalibrated.zip()).unwrap();
+    let fit = |curve: &str, more: &[&str]| {
+        let base = ["fit", curve, "--known", "lab.toml", "--json", "--profile", "none"];
+        arclen(folder.path(), &[&base, more].concat())
+    };
+    let derived = |output: Output| -> Vec<f64> {
+        assert_eq!(output.status.code(), Some(0), "{}", words(&output));
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let own = json["derived"].as_array().unwrap().iter();
+        own.map(|e| e["value"].as_f64().unwrap()).collect()
+    };
+    let table = derived(fit(CURVE, &[]));
+    let known =
+        ["--set", "instrument.sensitivity=60 nm/V", "--set", "instrument.spring_constant=1.2 N/m"];
+    for (curve, more) in [("a.jpk-force", &[][..]), ("volts.jpk-force", &known)] {
+        for (value, wanted) in derived(fit(curve, more)).into_iter().zip(&table) {
+            // a count is 7 fN, far below the noise
+            assert!((value / wanted - 1.0).abs() < 1e-3, "{curve}: {value:e} {wanted:e}");
+        }
+    }
+    let refused = fit("volts.jpk-force", &[]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(words(&refused).contains("--set instrument.sensitivity="), "{}", words(&refused));
+    let refused = fit("volts.jpk-force", &["--set", "instrument.sensitivity=60 nm"]);
+    assert!(words(&refused).contains("expected a sensitivity such as \"60 nm/V\""));
+}
+
+#[test]
+fn all_curves_of_a_map_are_fitted_unless_one_is_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("lab.toml"), LAB).unwrap();
+    let mut map = archive();
+    map.map(&[3, 17]);
+    // a measurement that was broken off
+    map.entry("index/17/segments/1/channels/vDeflection.dat", Some(vec![0; 12]));
+    std::fs::write(folder.path().join("m.jpk-force-map"), map.zip()).unwrap();
+    let fit = |more: &[&str]| {
+        let base = ["fit", "m.jpk-force-map", "--known", "lab.toml", "--profile", "none"];
+        arclen(folder.path(), &[&base, more].concat())
+    };
+    let output = fit(&["--out", "all"]);
+    assert_eq!(output.status.code(), Some(3), "{}", words(&output));
+    let place = "m.jpk-force-map, curve 17: index/17/segments/1/channels/vDeflection.dat: 12 bytes";
+    assert!(words(&output).contains(place), "{}", words(&output));
+    let table = std::fs::read_to_string(folder.path().join("all/fits.csv")).unwrap();
+    let lines: Vec<&str> = table.lines().collect();
+    assert!(lines.len() == 3 && lines[1].contains(",m-3,fitted,false,"), "{table}");
+    assert!(folder.path().join("all/m-3/fit.json").is_file());
+    let output = fit(&["--set", "data.curve=3", "--out", "one"]);
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output));
+    assert!(folder.path().join("one/fit.json").is_file());
 }

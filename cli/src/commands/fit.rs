@@ -8,7 +8,7 @@ use crate::exit::Exit;
 use crate::fit::files::{FIT, FitsRow, NAMES, files, fit_json, fits_csv, summary};
 use crate::fit::lab::{self, Lab, Wishes};
 use crate::fit::plan::{PLAN, planned};
-use crate::fit::{Failure, Laws, Outcome, fit_file, profiles};
+use crate::fit::{Failure, Laws, Outcome, Source, fit_file, profiles, sources};
 use crate::{run, terminal};
 use identify::data::Direction;
 use identify::{LawName, Profiles};
@@ -32,9 +32,9 @@ pub(super) fn fit(arguments: &FitArguments) -> Exit {
     if let Some(case) = &arguments.plan {
         return plan(arguments, case, &lab, wishes);
     }
-    match arguments.curves.as_slice() {
+    match sources(&arguments.curves, &lab).as_slice() {
         [one] => single(arguments, one, &lab, laws, wishes, &profiles),
-        _ => batch(arguments, &lab, laws, wishes, &profiles),
+        several => batch(arguments, several, &lab, laws, wishes, &profiles),
     }
 }
 
@@ -101,29 +101,30 @@ fn inputs(arguments: &FitArguments) -> Vec<PathBuf> {
     arguments.curves.iter().chain(&arguments.known).cloned().collect()
 }
 
-fn stem(path: &Path) -> String {
-    plain_name(&path.file_stem().unwrap_or_default().to_string_lossy())
+fn stem(source: &Source) -> String {
+    let name = plain_name(&source.path.file_stem().unwrap_or_default().to_string_lossy());
+    source.number.map_or(name.clone(), |number| format!("{name}-{number}"))
 }
 
 fn single(
     arguments: &FitArguments,
-    path: &Path,
+    source: &Source,
     lab: &Lab,
     laws: Laws,
     wishes: Wishes<'_>,
     profiles: &Profiles,
 ) -> Exit {
     let inputs = inputs(arguments);
-    let folder = match arguments.output.folder(&stem(path), &NAMES, &inputs) {
+    let folder = match arguments.output.folder(&stem(source), &NAMES, &inputs) {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
-    let outcome = match fit_file(path, lab, laws, wishes, profiles) {
+    let outcome = match fit_file(source, lab, laws, wishes, profiles) {
         Ok(outcome) => outcome,
         Err(Failure::Input(message)) => return refuse(&message),
         Err(Failure::NotFound(message)) => {
             terminal::error(&message);
-            let text = json!({ "curve": path.display().to_string(), "error": message });
+            let text = json!({ "curve": source.label(), "error": message });
             let made = Made::json::<serde_json::Error>(FIT, Ok(format!("{text:#}\n")));
             let words = |_: Option<&Path>| String::new();
             return arguments.output.deliver(folder.as_ref(), made, &inputs, words, false);
@@ -151,6 +152,7 @@ fn single(
 
 fn batch(
     arguments: &FitArguments,
+    sources: &[Source],
     lab: &Lab,
     laws: Laws,
     wishes: Wishes<'_>,
@@ -162,15 +164,15 @@ fn batch(
         Err(exit) => return exit,
     };
     let bar = (!arguments.output.quiet && terminal::watched())
-        .then(|| ProgressBar::new(arguments.curves.len() as u64));
-    let one = |path: &PathBuf| {
-        let outcome = fit_file(path, lab, laws, wishes, profiles);
+        .then(|| ProgressBar::new(sources.len() as u64));
+    let one = |source: &Source| {
+        let outcome = fit_file(source, lab, laws, wishes, profiles);
         if let Some(bar) = &bar {
             bar.inc(1);
         }
         outcome
     };
-    let all = || arguments.curves.par_iter().map(one).collect::<Vec<_>>();
+    let all = || sources.par_iter().map(one).collect::<Vec<_>>();
     let jobs = arguments.jobs.map_or(0, usize::from);
     let outcomes: Vec<Result<Outcome, Failure>> =
         match rayon::ThreadPoolBuilder::new().num_threads(jobs).build() {
@@ -191,11 +193,11 @@ fn batch(
     let (mut rows, mut listed, mut contents) = (Vec::new(), Vec::new(), Vec::new());
     let mut names: BTreeSet<String> = BTreeSet::new();
     let mut complete = true;
-    for (path, outcome) in arguments.curves.iter().zip(&outcomes) {
-        let curve = path.display().to_string();
+    for (source, outcome) in sources.iter().zip(&outcomes) {
+        let curve = source.label();
         match outcome {
             Ok(outcome) => {
-                let name = unique(&mut names, stem(path));
+                let name = unique(&mut names, stem(source));
                 let report = &outcome.best.report;
                 complete &= report.is_good();
                 rows.push(FitsRow::of(report, &name));

@@ -115,7 +115,9 @@ fn readable(value: f64, unit: &str) -> String {
         (1e-18, "a"),
     ];
     let usual = matches!(unit, "Pa" | "m" | "N" | "N/m");
-    if !usual || value == 0.0 || !value.is_finite() {
+    // beyond the prefixes only powers of ten are short
+    let prefixed = (1e-18..1e12).contains(&value.abs());
+    if !usual || !prefixed {
         return format!("{value:.4e} {unit}").trim().to_owned();
     }
     let (factor, prefix) =
@@ -143,7 +145,11 @@ pub(crate) fn summary(outcome: &Outcome) -> String {
     let mut own: Vec<&Estimate> = report.derived.iter().filter(fitted).collect();
     own.extend(report.parameters.iter().filter(fitted));
     for e in own {
-        let end = |x: Option<f64>| x.map_or("open".to_owned(), |x| readable(x, e.unit));
+        // nothing is known where an end left the numbers of the machine
+        let open = |x: &f64| *x == 0.0 && e.value != 0.0 || !x.is_finite();
+        let end = |x: Option<f64>| {
+            x.filter(|x| !open(x)).map_or("open".to_owned(), |x| readable(x, e.unit))
+        };
         let interval = format!("{} to {}", end(e.interval95[0]), end(e.interval95[1]));
         let verdict = match e.verdict {
             Some(identify::uncertainty::verdict::Verdict::Identified) => "identified",

@@ -5,14 +5,14 @@ pub(crate) mod lab;
 mod picture;
 pub(crate) mod plan;
 
-use identify::data::read;
 use identify::data::read::LARGEST;
+use identify::data::{jpk, read};
 use identify::fit::Setup;
 use identify::record::Warning;
 use identify::uncertainty::Quantity;
 use identify::{FitError, Identification, LawName, Profiles};
 use lab::{Lab, Wishes};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Difference of `χ²` below which two laws cannot be told apart.
 const INDISTINGUISHABLE: f64 = 6.0;
@@ -74,25 +74,74 @@ pub(crate) fn profiles(text: Option<&str>) -> Result<Profiles, String> {
     }
 }
 
-/// Fits a file.
+/// Where a curve is: a file, or a place in a map.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Source {
+    /// The file.
+    pub(crate) path: PathBuf,
+    /// Its number in a map of which all curves are fitted.
+    pub(crate) number: Option<usize>,
+}
+
+impl Source {
+    /// What messages call it.
+    pub(crate) fn label(&self) -> String {
+        let file = self.path.display();
+        match self.number {
+            None => file.to_string(),
+            Some(number) => format!("{file}, curve {number}"),
+        }
+    }
+}
+
+/// The curves of the files: of a map all, unless `data.curve` chooses one.
+pub(crate) fn sources(paths: &[PathBuf], lab: &Lab) -> Vec<Source> {
+    let one = |path: &PathBuf| {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let map = lab.layout.curve.is_none() && jpk::MAPS.contains(&ending.as_str());
+        // what cannot be read is told when it is its turn
+        let numbers = map.then(|| jpk::numbers(&bytes(path).ok()?).ok()).flatten();
+        let source = |number| Source { path: path.clone(), number };
+        match numbers.unwrap_or_default() {
+            numbers if numbers.len() > 1 => numbers.into_iter().map(|n| source(Some(n))).collect(),
+            _ => vec![source(None)],
+        }
+    };
+    paths.iter().flat_map(one).collect()
+}
+
+/// The content of a file, unless it is too long for a curve.
+fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+    let file = path.display();
+    let unreadable = |error| format!("{file}: cannot be read: {error}");
+    let size = std::fs::metadata(path).map_err(unreadable)?.len();
+    if size > LARGEST {
+        return Err(format!("{file}: longer than {LARGEST} bytes; this is not a curve"));
+    }
+    std::fs::read(path).map_err(unreadable)
+}
+
+/// Fits a curve.
 pub(crate) fn fit_file(
-    path: &Path,
+    source: &Source,
     lab: &Lab,
     laws: Laws,
     wishes: Wishes<'_>,
     profiles: &Profiles,
 ) -> Result<Outcome, Failure> {
-    let file = path.display().to_string();
+    let path = source.path.display().to_string();
+    let file = source.label();
     let input = |message: String| Failure::Input(message);
-    let size = std::fs::metadata(path)
-        .map_err(|error| input(format!("{file}: cannot be read: {error}")))?
-        .len();
-    if size > LARGEST {
-        return Err(input(format!("{file}: longer than {LARGEST} bytes; this is not a curve")));
-    }
-    let bytes =
-        std::fs::read(path).map_err(|error| input(format!("{file}: cannot be read: {error}")))?;
-    let curve = read(&file, &bytes, &lab.layout).map_err(|error| input(error.to_string()))?;
+    let bytes = bytes(&source.path).map_err(input)?;
+    let mut layout = lab.layout.clone();
+    layout.curve = source.number.or(layout.curve);
+    let mut curve = read(&path, &bytes, &layout).map_err(|error| {
+        let message = error.to_string();
+        // of a map, which curve
+        let rest = message.strip_prefix(&path).map(|rest| format!("{file}{rest}"));
+        input(rest.unwrap_or(message))
+    })?;
+    curve.name.clone_from(&file);
     let chosen: Vec<LawName> = match laws {
         Laws::All => LawName::ALL.to_vec(),
         Laws::One(law) => vec![law],

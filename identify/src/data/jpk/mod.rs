@@ -28,6 +28,9 @@ use properties::Properties;
 /// Endings of the files that are read.
 pub const ENDINGS: [&str; 4] = ["jpk-force", "jpk-force-map", "jpk-qi-data", "jpk-qi-series"];
 
+/// Those that may hold several curves.
+pub const MAPS: [&str; 2] = ["jpk-force-map", "jpk-qi-data"];
+
 const FORCE: &str = "vDeflection";
 /// Heights that a sensor measures, in the order in which they are preferred.
 const MEASURED: [&str; 3] = ["measuredHeight", "capacitiveSensorHeight", "strainGaugeHeight"];
