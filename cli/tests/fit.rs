@@ -30,7 +30,7 @@ fn a_curve_becomes_files_and_a_case_that_can_be_traced() {
     std::fs::write(&lab, LAB).unwrap();
     let out = folder.path().join("out");
     let fit = |more: &[&str]| {
-        let base = ["fit", CURVE, "--known", "lab.toml", "--out", "out", "--profile", "none"];
+        let base = ["fit", CURVE, "--known", "lab.toml", "--out", "out", "--profile", "young"];
         arclen(folder.path(), &[&base, more].concat())
     };
     let output = fit(&["--json"]);
@@ -43,8 +43,20 @@ fn a_curve_becomes_files_and_a_case_that_can_be_traced() {
     for key in wanted.into_iter().chain(["weakest_direction", "cost", "files"]) {
         assert!(json.get(key).is_some(), "{key}");
     }
-    for name in ["fit.json", "fit.csv", "fit.svg", "case.toml"] {
+    for name in ["fit.json", "fit.csv", "fit.svg", "fit.png", "case.toml"] {
         assert!(out.join(name).is_file(), "{name}");
+    }
+    // each known point of the profile is a dot, and the curve through them is no polygon
+    let known = json["profiles"][0]["values"].as_array().unwrap().len();
+    let drawing = std::fs::read_to_string(out.join("profile.svg")).unwrap();
+    let longest = drawing.lines().map(|path| path.matches('L').count()).max().unwrap();
+    assert!(drawing.matches("h0").count() == known && longest > 10 * known, "{known} {longest}");
+    for name in ["fit.png", "profile.png"] {
+        let bytes = std::fs::read(out.join(name)).unwrap();
+        assert!(
+            bytes.starts_with(b"\x89PNG") && bytes.ends_with(b"IEND\xae\x42\x60\x82"),
+            "{name}"
+        );
     }
     let table = std::fs::read_to_string(out.join("fit.csv")).unwrap();
     let header = "segment,piezo,separation,approach_one_pole,force,model,residual,used";

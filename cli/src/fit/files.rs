@@ -2,6 +2,7 @@
 
 use super::Outcome;
 use super::picture;
+use crate::pictures::{PngError, png};
 use identify::Key;
 use identify::record::{Estimate, Report};
 use serde_json::{Value, json};
@@ -10,7 +11,24 @@ use std::fmt::Write as _;
 /// Name of the fit's JSON.
 pub(crate) const FIT: &str = "fit.json";
 /// Names of the files of a fit.
-pub(crate) const NAMES: [&str; 5] = [FIT, "fit.csv", "case.toml", "fit.svg", "profile.svg"];
+pub(crate) const NAMES: [&str; 7] =
+    [FIT, "fit.csv", "case.toml", "fit.svg", "fit.png", "profile.svg", "profile.png"];
+
+/// Why a file could not be made.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum FileError {
+    /// A table.
+    #[error("fit.csv: {0}")]
+    Csv(#[from] csv::Error),
+    /// A picture.
+    #[error("{name}.png: {error}")]
+    Png {
+        /// Which.
+        name: &'static str,
+        /// What happened.
+        error: PngError,
+    },
+}
 
 /// The JSON of a fit.
 ///
@@ -40,15 +58,21 @@ pub(crate) fn fit_json(outcome: &Outcome) -> Result<String, serde_json::Error> {
 pub(crate) fn files(
     outcome: &Outcome,
     pictures: bool,
-) -> Result<Vec<(String, Vec<u8>)>, csv::Error> {
+) -> Result<Vec<(String, Vec<u8>)>, FileError> {
     let mut files = vec![
         ("fit.csv".to_owned(), fit_csv(outcome)?),
         ("case.toml".to_owned(), case_toml(outcome).into_bytes()),
     ];
     if pictures {
-        files.push(("fit.svg".to_owned(), picture::fit(outcome).into_bytes()));
-        if let Some(svg) = picture::profiles(&outcome.best.report) {
-            files.push(("profile.svg".to_owned(), svg.into_bytes()));
+        let drawings = [
+            ("fit", Some(picture::fit(outcome))),
+            ("profile", picture::profiles(&outcome.best.report)),
+        ];
+        for (name, svg) in drawings {
+            let Some(svg) = svg else { continue };
+            let pixels = png(&svg).map_err(|error| FileError::Png { name, error })?;
+            files.push((format!("{name}.svg"), svg.into_bytes()));
+            files.push((format!("{name}.png"), pixels));
         }
     }
     Ok(files)
@@ -282,4 +306,26 @@ pub(crate) fn fits_csv(rows: &[FitsRow]) -> Result<Vec<u8>, csv::Error> {
         writer.serialize(row)?;
     }
     writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_whatever_their_size() {
+        for (value, unit, text) in [
+            (1.703e9, "Pa", "1.7030 GPa"),
+            (2.2e-8, "m", "22.0000 nm"),
+            (-5e-11, "N", "-50.0000 pN"),
+            (4e-16, "N m", "4.0000e-16 N m"),
+            (2.5, "", "2.5000e0"),
+            // ends of intervals that know nothing
+            (1.2e200, "m", "1.2000e200 m"),
+            (3e-40, "Pa", "3.0000e-40 Pa"),
+            (0.0, "N", "0.0000e0 N"),
+        ] {
+            assert_eq!(readable(value, unit), text);
+        }
+    }
 }

@@ -4,6 +4,7 @@ pub(crate) mod files;
 pub(crate) mod lab;
 mod picture;
 pub(crate) mod plan;
+mod smooth;
 
 use identify::data::read::LARGEST;
 use identify::data::{jpk, read};

@@ -1,6 +1,6 @@
 //! A fit as pictures: data with the model on top, residuals, profiles.
 
-use super::Outcome;
+use super::{Outcome, smooth};
 use crate::pictures::{Curve, Ink, Panel, PanelLine, Pen, Sheet};
 use identify::record::{Report, Row};
 
@@ -101,11 +101,16 @@ pub(super) fn profiles(report: &Report) -> Option<String> {
         .iter()
         .map(|profile| {
             let unit = report.estimate(&profile.key).map_or("", |e| e.unit);
-            let growth = Curve {
+            let known = Curve {
                 x: profile.values.clone(),
                 y: profile.points.iter().map(|p| p.growth).collect(),
                 ..Curve::default()
             };
+            // the root with its sign rises throughout and is straight for a parabola
+            let root: Vec<f64> =
+                profile.points.iter().map(|p| p.growth.sqrt().copysign(p.offset)).collect();
+            let (x, root) = smooth::through(&profile.values, &root);
+            let growth = Curve { x, y: root.iter().map(|r| r * r).collect(), ..Curve::default() };
             let ends = [profile.values.first(), profile.values.last()];
             let level = Curve {
                 x: ends.into_iter().flatten().copied().collect(),
@@ -118,6 +123,7 @@ pub(super) fn profiles(report: &Report) -> Option<String> {
                 y: "growth of chi2".to_owned(),
                 lines: vec![
                     line("profile", Ink::Place(1), Pen::Data, growth),
+                    line("", Ink::Place(1), Pen::Points, known),
                     line("95 %", Ink::Faint, Pen::Law, level),
                 ],
                 ..Panel::default()

@@ -56,6 +56,8 @@ pub(crate) enum Pen {
     Law,
     /// Thin and solid: plates.
     Thin,
+    /// The points alone.
+    Points,
 }
 
 /// A line of a panel with its entry in the legend.

@@ -150,6 +150,7 @@ impl<'p> Layout<'p> {
         };
         for stretch in line.curve.stretches() {
             let dashed = stretch.stability != Stability::Stable;
+            let points = line.pen == Pen::Points;
             let mut path = String::new();
             let mut last = [f64::NAN; 2];
             for i in stretch.points {
@@ -162,6 +163,11 @@ impl<'p> Layout<'p> {
                     continue;
                 }
                 last = at;
+                // a line without length has round ends: a dot
+                if points {
+                    let _ = write!(path, "M{:.2} {:.2}h0", at[0], at[1]);
+                    continue;
+                }
                 let letter = if path.is_empty() { 'M' } else { 'L' };
                 let _ = write!(path, "{letter}{:.2} {:.2}", at[0], at[1]);
             }
@@ -222,6 +228,9 @@ fn stroke(line: &PanelLine, dashed: bool) -> String {
             "stroke=\"{color}\" stroke-width=\"1.8\" stroke-dasharray=\"0.1 4\" stroke-linecap=\"round\""
         ),
         (Pen::Thin, _) => format!("stroke=\"{color}\" stroke-width=\"0.8\""),
+        (Pen::Points, _) => {
+            format!("stroke=\"{color}\" stroke-width=\"6\" stroke-linecap=\"round\"")
+        }
     }
 }
 
