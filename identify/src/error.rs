@@ -41,7 +41,10 @@ pub enum FitError {
         key: &'static str,
     },
     /// No noise: a computed curve, or a constant one.
-    #[error("force: no noise can be read off; a fit needs the noise of at least 8 samples")]
+    #[error(
+        "force: no noise can be read off: the force is constant or computed, or no segment has 8 samples; a fit \
+         weighs the samples by their noise"
+    )]
     NoNoise,
     /// The force never rises clearly above the baseline.
     #[error(
@@ -83,6 +86,18 @@ pub enum FitError {
         span: f64,
         /// Radius, m.
         radius: f64,
+    },
+    /// Plates that would have gone through each other.
+    #[error(
+        "height: beyond the contact point the plates approach by {squeezed:.3e} m, the lever's deflection taken off, \
+         and the bubble is only {room:.3e} m thick there; a unit, the radius or the lever is wrong \
+         (data.height_unit, physical.radius, instrument.spring_constant)"
+    )]
+    TooDeep {
+        /// Approach beyond the contact point, m.
+        squeezed: f64,
+        /// Thickness of what deforms, m.
+        room: f64,
     },
     /// Forces that the lever cannot have shown.
     #[error(
@@ -259,7 +274,8 @@ pub enum DataError {
     /// Heights that go the other way.
     #[error(
         "{file}: the height goes from {from:.4e} m to {to:.4e} m on {direction}; it must fall on approach: if \
-         the file counts the other way, --set data.height=rises"
+         the file counts the other way, --set data.height=rises; if its lines were sorted, put them in the order \
+         of time"
     )]
     Order {
         /// The file.

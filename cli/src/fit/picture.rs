@@ -24,11 +24,11 @@ pub(super) fn fit(outcome: &Outcome) -> String {
     let measured = |row: &Row| 1e9 * (row.force - level(row));
     let model = |row: &Row| 1e9 * (row.model - level(row));
     let residual = |row: &Row| if row.used { 1e9 * row.residual } else { f64::NAN };
-    let (mut force, mut rest) = (Vec::new(), Vec::new());
+    let (mut data, mut force, mut rest) = (Vec::new(), Vec::new(), Vec::new());
     for (k, segment) in ["approach", "retract"].into_iter().enumerate() {
         if rows.iter().any(|row| row.segment == segment) {
             let ink = Ink::Place(1 + k);
-            force.insert(k, line(segment, Ink::Faint, Pen::Thin, curve(segment, &measured)));
+            data.push(line("", Ink::Faint, Pen::Thin, curve(segment, &measured)));
             force.push(line(
                 &format!("model, {segment}"),
                 ink.clone(),
@@ -38,12 +38,11 @@ pub(super) fn fit(outcome: &Outcome) -> String {
             rest.push(line(segment, ink, Pen::Thin, curve(segment, &residual)));
         }
     }
-    for one in force.iter_mut().take(2).filter(|one| one.pen == Pen::Thin) {
-        one.label = String::new();
-    }
-    if let Some(first) = force.first_mut() {
+    if let Some(first) = data.first_mut() {
         first.label = "measured".to_owned();
     }
+    // the model is drawn on top
+    let force = [data, force].concat();
     let axis = "travel of the piezo beyond the contact point [nm]".to_owned();
     // attraction is small beside what presses: once more, by itself
     let pull = -1e9 * report.pull_off.modelled.min(report.pull_off.measured);

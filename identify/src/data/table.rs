@@ -311,16 +311,15 @@ pub(super) fn check(mut curve: Curve) -> Result<Curve, DataError> {
     if curve.is_empty() {
         return Err(DataError::Empty { file });
     }
+    // told only where no segment is without order: lines in no order go both ways
+    let mut reversed = None;
     for segment in &curve.segments {
         let (h, n) = (&segment.height, segment.height.len());
         if n < 3 {
             continue;
         }
         let falls = h[n - 1] < h[0];
-        if falls != (segment.direction == Direction::Approach) {
-            let direction = segment.direction.name();
-            return Err(DataError::Order { file, direction, from: h[0], to: h[n - 1] });
-        }
+        let direction = segment.direction.name();
         // a piezo creeps and shakes; what goes back over a tenth of the way is no segment
         let way = (h[n - 1] - h[0]).abs();
         let (mut turned, mut extreme) = (0.0_f64, h[0]);
@@ -330,8 +329,14 @@ pub(super) fn check(mut curve: Curve) -> Result<Curve, DataError> {
             extreme = if falls { extreme.min(*x) } else { extreme.max(*x) };
         }
         if turned > 0.1 * way {
-            return Err(DataError::Unsorted { file, direction: segment.direction.name() });
+            return Err(DataError::Unsorted { file, direction });
         }
+        if falls != (segment.direction == Direction::Approach) && reversed.is_none() {
+            reversed = Some((direction, h[0], h[n - 1]));
+        }
+    }
+    if let Some((direction, from, to)) = reversed {
+        return Err(DataError::Order { file, direction, from, to });
     }
     // the deepest samples press, or the sign is another; what ends in attraction may be either
     let main = curve

@@ -88,6 +88,9 @@ pub const FEWEST_OF_BASELINE: usize = 8;
 const STEEP: f64 = 50.0;
 /// Largest deflection of the lever in travels of the piezo: more than 1 is a wrong unit or calibration.
 const MOST_DEFLECTION: f64 = 1.2;
+/// Largest approach of the plates in the room that the bubble leaves them: more than 1 is a wrong unit, radius or
+/// calibration; an onset in noise and a lever known to ten per cent need some room themselves.
+const MOST_SQUEEZED: f64 = 1.5;
 /// Least deflection that an instrument resolves, m: a hundredth of an atom.
 const LEAST_DEFLECTION: f64 = 1e-12;
 /// Samples of the thinned curve on which starts are compared.
@@ -168,7 +171,10 @@ pub fn check<'a>(curve: &'a Curve, setup: &Setup) -> Result<(Objective<'a>, Look
         }
     }
     let noise = curve.noise();
-    if !(noise > 0.0 && noise.is_finite()) {
+    let strongest =
+        curve.segments.iter().flat_map(|s| &s.force).fold(0.0_f64, |m, f| m.max(f.abs()));
+    // what differences of equal numbers leave is no noise
+    if !(noise > 1e-14 * strongest && noise.is_finite()) {
         return Err(FitError::NoNoise);
     }
     let Some(look) = look(curve, noise, p[Key::SpringConstant]) else {
@@ -198,6 +204,11 @@ pub fn check<'a>(curve: &'a Curve, setup: &Setup) -> Result<(Objective<'a>, Look
     let span = curve.farthest() - curve.nearest();
     if !(1e-3..=1e3).contains(&(span / radius)) {
         return Err(FitError::Scale { span, radius });
+    }
+    let squeezed = look.onset - curve.nearest() - deflection;
+    let room = f64::from(setup.contacts) * radius;
+    if squeezed > MOST_SQUEEZED * room {
+        return Err(FitError::TooDeep { squeezed, room });
     }
     let model = Model {
         law: setup.law,
