@@ -288,6 +288,36 @@ fn what_is_known_of_the_lever_replaces_what_the_file_says() {
 }
 
 #[test]
+fn a_deflection_in_metres_needs_no_sensitivity_and_says_so() {
+    let mut archive = Archive::new(Common::Shared);
+    // the samples are metres: what the sensitivity would have made of volts
+    let factor = archives::SENSITIVITY / 1024.0;
+    archive.set("vDeflection", "encoder.scaling.multiplier", &format!("{factor:e}"));
+    let offset = archives::SENSITIVITY * 0.5;
+    archive.set("vDeflection", "encoder.scaling.offset", &format!("{offset:e}"));
+    archive.set("vDeflection", "encoder.scaling.unit.unit", "m");
+    archive.undefine("vDeflection", "distance");
+    archive.set("vDeflection", "conversion-set.conversions.base", "distance");
+    let curve = good(&archive);
+    assert_eq!(curve, good(&Archive::new(Common::Shared)));
+    let known = read(NAME, &archive.zip(), &told(Some(1e-7), Some(0.0625))).unwrap();
+    assert_eq!(known.segments, curve.segments);
+    let note = "the sensitivity that is known is not used: the file's own samples are distance";
+    assert_eq!(known.notes, [note]);
+}
+
+#[test]
+fn newtons_for_a_volt_are_no_spring_constant() {
+    let mut archive = Archive::new(Common::Own);
+    archive.conversion("vDeflection", "force", archives::SENSITIVITY * 0.0625, 0.0);
+    let place = "conversion-set.conversion.force.base-calibration-slot";
+    archive.set("vDeflection", place, "volts");
+    let curve = good(&archive);
+    assert_eq!(curve.segments, good(&Archive::new(Common::Own)).segments);
+    assert_eq!(curve.spring_constant, None);
+}
+
+#[test]
 fn signs_that_go_the_other_way_are_refused_or_turned() {
     let mut archive = Archive::new(Common::Own);
     archive.conversion("vDeflection", "force", -0.0625, 0.0);

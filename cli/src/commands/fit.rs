@@ -5,7 +5,7 @@ use crate::arguments::{FitArguments, SegmentsWanted};
 use crate::case::name::plain_name;
 use crate::case::{Override, load};
 use crate::exit::Exit;
-use crate::fit::files::{FIT, FitsRow, NAMES, files, fit_json, fits_csv, summary};
+use crate::fit::files::{Drawn, FIT, FitsRow, NAMES, files, fit_json, fits_csv, summary};
 use crate::fit::lab::{self, Lab, Wishes};
 use crate::fit::plan::{PLAN, planned};
 use crate::fit::{Failure, Laws, Outcome, Source, fit_file, profiles, sources};
@@ -101,6 +101,11 @@ fn inputs(arguments: &FitArguments) -> Vec<PathBuf> {
     arguments.curves.iter().chain(&arguments.known).cloned().collect()
 }
 
+/// `usual`, unless no pictures are wanted.
+fn drawn(arguments: &FitArguments, usual: Drawn) -> Drawn {
+    if arguments.output.no_pictures { Drawn::Nothing } else { usual }
+}
+
 fn stem(source: &Source) -> String {
     let name = plain_name(&source.path.file_stem().unwrap_or_default().to_string_lossy());
     source.number.map_or(name.clone(), |number| format!("{name}-{number}"))
@@ -132,7 +137,7 @@ fn single(
     };
     let mut made = Made::json(FIT, fit_json(&outcome));
     if folder.is_some() {
-        made.files(files(&outcome, !arguments.output.no_pictures));
+        made.files(files(&outcome, drawn(arguments, Drawn::SvgAndPng)));
     }
     let complete = outcome.best.report.is_good();
     arguments.output.deliver(
@@ -203,7 +208,7 @@ fn batch(
                 rows.push(FitsRow::of(report, &name));
                 listed.push(json!({ "curve": curve, "folder": name, "good": report.is_good() }));
                 let json = fit_json(outcome).map(|text| (FIT.to_owned(), text.into_bytes()));
-                let own = files(outcome, !arguments.output.no_pictures);
+                let own = files(outcome, drawn(arguments, Drawn::Svg));
                 match (json, own) {
                     (Ok(json), Ok(own)) => contents.extend(
                         std::iter::once(json)

@@ -54,25 +54,35 @@ pub(crate) fn fit_json(outcome: &Outcome) -> Result<String, serde_json::Error> {
     Ok(text)
 }
 
+/// What is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Drawn {
+    /// Nothing.
+    Nothing,
+    /// SVG alone: a batch holds the files of all its curves until the end, and PNG are ten times as large.
+    Svg,
+    /// SVG, and the same as PNG.
+    SvgAndPng,
+}
+
 /// All files but the JSON.
-pub(crate) fn files(
-    outcome: &Outcome,
-    pictures: bool,
-) -> Result<Vec<(String, Vec<u8>)>, FileError> {
+pub(crate) fn files(outcome: &Outcome, drawn: Drawn) -> Result<Vec<(String, Vec<u8>)>, FileError> {
     let mut files = vec![
         ("fit.csv".to_owned(), fit_csv(outcome)?),
         ("case.toml".to_owned(), case_toml(outcome).into_bytes()),
     ];
-    if pictures {
+    if drawn != Drawn::Nothing {
         let drawings = [
             ("fit", Some(picture::fit(outcome))),
             ("profile", picture::profiles(&outcome.best.report)),
         ];
         for (name, svg) in drawings {
             let Some(svg) = svg else { continue };
-            let pixels = png(&svg).map_err(|error| FileError::Png { name, error })?;
+            if drawn == Drawn::SvgAndPng {
+                let pixels = png(&svg).map_err(|error| FileError::Png { name, error })?;
+                files.push((format!("{name}.png"), pixels));
+            }
             files.push((format!("{name}.svg"), svg.into_bytes()));
-            files.push((format!("{name}.png"), pixels));
         }
     }
     Ok(files)

@@ -306,8 +306,27 @@ impl<'a> Channel<'a> {
 
     /// The sensitivity (m/V) and the spring constant (N/m) that the file states.
     pub(super) fn stated(&self) -> Result<Told, ArchiveError> {
-        let of = |slot| self.step(slot, Told::default()).map(|step| step.map(|s| s.multiplier));
-        Ok(Told { sensitivity: of("distance")?, spring_constant: of("force")? })
+        let of = |slot, base: &str| -> Result<Option<f64>, ArchiveError> {
+            let step = self.step(slot, Told::default())?.filter(|step| step.base == base);
+            Ok(step.map(|step| step.multiplier))
+        };
+        let volts = self.need("conversion-set.conversions.base")?.value;
+        Ok(Told { sensitivity: of("distance", volts)?, spring_constant: of("force", "distance")? })
+    }
+
+    /// What is known of the lever and has no use here, because the file has the deflection in metres, or the force.
+    pub(super) fn unused(&self, told: Told) -> Result<Vec<String>, ArchiveError> {
+        let base = self.need("conversion-set.conversions.base")?;
+        let needless = |what: &str| {
+            format!(
+                "the {what} that is known is not used: the file's own samples are {}",
+                base.value
+            )
+        };
+        let metres = told.sensitivity.is_some() && matches!(base.value, "distance" | "force");
+        let newtons = told.spring_constant.is_some() && base.value == "force";
+        let sensitivity = metres.then(|| needless("sensitivity"));
+        Ok(sensitivity.into_iter().chain(newtons.then(|| needless("spring constant"))).collect())
     }
 
     /// The samples as forces, N.

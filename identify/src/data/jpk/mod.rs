@@ -89,7 +89,7 @@ pub(super) fn curve(bytes: &[u8], layout: &Layout) -> Result<Curve, ArchiveError
         ));
     }
     let told = Told { sensitivity: layout.sensitivity, spring_constant: layout.spring_constant };
-    let mut stated = Told::default();
+    let (mut stated, mut unused) = (Told::default(), Vec::new());
     let sign = layout.force_sign.unwrap_or(1.0);
     let turn = if layout.height_rises == Some(true) { -1.0 } else { 1.0 };
     for part in &parts {
@@ -103,6 +103,7 @@ pub(super) fn curve(bytes: &[u8], layout: &Layout) -> Result<Curve, ArchiveError
         let (channel, entry, bytes) = load(force.as_str())?;
         let mut forces = channel.force(&entry, &bytes, told)?;
         stated = channel.stated()?;
+        unused = channel.unused(told)?;
         let (channel, entry, bytes) = load(height.as_str())?;
         let mut lengths = channel.height(&entry, &bytes, &channels)?;
         forces.iter_mut().for_each(|f| *f *= sign);
@@ -124,6 +125,7 @@ pub(super) fn curve(bytes: &[u8], layout: &Layout) -> Result<Curve, ArchiveError
             }),
         }
     }
+    curve.notes.append(&mut unused);
     if let (Some(file), Some(known)) = (stated.sensitivity, told.sensitivity)
         && (file / known - 1.0).abs() > 1e-6
     {
