@@ -174,7 +174,11 @@ fn an_archive_gives_the_shell_that_its_table_gives() {
     let table = derived(fit(CURVE, &[]));
     let known =
         ["--set", "instrument.sensitivity=60 nm/V", "--set", "instrument.spring_constant=1.2 N/m"];
-    for (curve, more) in [("a.jpk-force", &[][..]), ("volts.jpk-force", &known)] {
+    let prior =
+        ["--set", "instrument.sensitivity=60 nm/V", "--prior", "spring_constant=1.2 N/m:0.06 N/m"];
+    let archives =
+        [("a.jpk-force", &[][..]), ("volts.jpk-force", &known), ("volts.jpk-force", &prior)];
+    for (curve, more) in archives {
         for (value, wanted) in derived(fit(curve, more)).into_iter().zip(&table) {
             // a count is 7 fN, far below the noise
             assert!((value / wanted - 1.0).abs() < 1e-3, "{curve}: {value:e} {wanted:e}");

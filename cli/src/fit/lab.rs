@@ -160,7 +160,6 @@ fn read(reader: &Reader, root: Section<'_>) -> Option<Lab> {
     lab.layout = layout(reader, table("data", DATA));
     let sensitivity = reader.quantity(instrument, "sensitivity", Dimension::Sensitivity, POSITIVE);
     lab.layout.sensitivity = sensitivity.map(|sensitivity| sensitivity.si);
-    lab.layout.spring_constant = Some(lab.base[Key::SpringConstant]).filter(|k| k.is_finite());
     Some(lab)
 }
 
@@ -231,13 +230,6 @@ impl Lab {
         if base[Key::SpringConstant].is_nan() {
             base[Key::SpringConstant] = stated.unwrap_or(f64::NAN);
         }
-        if base[Key::SpringConstant].is_nan() {
-            return Err(
-                "instrument.spring_constant: missing; neither the file of known values nor the \
-                        curve states it: --set instrument.spring_constant=\"0.08 N/m\""
-                    .to_owned(),
-            );
-        }
         let mut setup = Setup::new(law, base, self.priors.clone());
         setup.contacts = self.contacts;
         setup.robust = wishes.robust;
@@ -253,6 +245,13 @@ impl Lab {
             setup.priors.retain(|p| p.key != prior.key);
             setup.priors.push(prior);
             free(&mut setup, prior.key);
+        }
+        if setup.base[Key::SpringConstant].is_nan() {
+            return Err(
+                "instrument.spring_constant: missing; neither the file of known values nor the \
+                        curve states it: --set instrument.spring_constant=\"0.08 N/m\""
+                    .to_owned(),
+            );
         }
         for name in wishes.free {
             let key = key("--free", name)?;
@@ -283,6 +282,14 @@ impl Lab {
             setup.range = Some(parse_range(range)?);
         }
         Ok(setup)
+    }
+
+    /// How a file is laid out, with what is known of the lever; wrong options are told by [`Lab::setup`].
+    pub(crate) fn layout(&self, wishes: Wishes<'_>) -> Layout {
+        let mut priors = wishes.prior.iter().filter_map(|text| parse_prior(text).ok());
+        let prior = priors.rfind(|prior| prior.key == Key::SpringConstant);
+        let known = prior.map_or(self.base[Key::SpringConstant], |prior| prior.value);
+        Layout { spring_constant: Some(known).filter(|k| k.is_finite()), ..self.layout.clone() }
     }
 
     /// Whether the radius stands without an error, which is knowledge that nobody has.

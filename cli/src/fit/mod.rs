@@ -134,7 +134,7 @@ pub(crate) fn fit_file(
     let file = source.label();
     let input = |message: String| Failure::Input(message);
     let bytes = bytes(&source.path).map_err(input)?;
-    let mut layout = lab.layout.clone();
+    let mut layout = lab.layout(wishes);
     layout.curve = source.number.or(layout.curve);
     let mut curve = read(&path, &bytes, &layout).map_err(|error| {
         let message = error.to_string();
