@@ -36,8 +36,15 @@ const SMOOTH: f64 = 1e-6;
 const STRAIGHT: f64 = 0.5;
 /// A value smaller than this part of the largest unknown may be rounding.
 const SMALL: f64 = 1e-4;
+/// Errors of two rungs by which their values may differ.
+const CONTRADICTION: f64 = 4.0;
 /// Moves of all arguments by which rounding is measured.
 const MOVES: usize = 3;
+/// Longer moves, as parts of the unknowns, and how much shorter ones are compared; in irregular
+/// places, since those of powers of two may share their rounding.
+const WIGGLE: f64 = 1.0 / 67_108_864.0;
+const SHORTER: f64 = 8.0;
+const IRREGULAR: [f64; 3] = [1.0, -1.618, 2.731];
 
 /// Unknowns below this may all be rounding; if they are not, shorter steps are found.
 const VANISHES: f64 = 1e-10;
@@ -139,6 +146,12 @@ impl Ladder {
             f(place, values, r);
         });
         values.copy_from_slice(p);
+        self.hidden(|multiple, r| {
+            for (k, (place, u)) in place.iter_mut().zip(u).enumerate() {
+                *place = u + multiple * sign(k, 1) * u;
+            }
+            f(place, values, r);
+        });
         if u.iter().zip(unit).any(|(u, unit)| is_small(*u, *unit)) {
             self.small_arguments(|multiple, r| {
                 for (k, ((place, u), unit)) in place.iter_mut().zip(u).zip(unit).enumerate() {
@@ -168,6 +181,31 @@ impl Ladder {
         }
         for (noise, value) in self.noise.iter_mut().zip(&self.centre) {
             *noise = 2.0 * *noise + f64::EPSILON * value.abs();
+        }
+    }
+
+    /// Rounding errors of what lies between the arguments and the function: a displacement added to a
+    /// place that is larger shows them only where it moves by more than its own last place. They are
+    /// what is left of a straight line along a short way and is no less along a shorter one, as a bend
+    /// would be. `f` evaluates at a multiple of the unknowns' magnitudes, with the signs of a move.
+    fn hidden(&mut self, mut f: impl FnMut(f64, &mut [f64])) {
+        let squares: f64 = IRREGULAR.iter().map(|t| t * t).sum();
+        for way in [WIGGLE, WIGGLE / SHORTER] {
+            for (place, value) in IRREGULAR.into_iter().zip(&mut self.values) {
+                f(place * way, value);
+            }
+            for row in 0..self.noise.len() {
+                let g = self.centre[row];
+                let changes: [f64; 3] = std::array::from_fn(|k| self.values[k][row] - g);
+                let slope = IRREGULAR.iter().zip(changes).map(|(t, c)| t * c).sum::<f64>();
+                let off = |(t, c): (&f64, f64)| (c - t * slope / squares).abs();
+                let off = IRREGULAR.iter().zip(changes).map(off).fold(0.0, f64::max);
+                if way == WIGGLE {
+                    self.learnt[row] = off;
+                } else if off > self.learnt[row] / SHORTER && off.is_finite() {
+                    self.noise[row] = self.noise[row].max(2.0 * off.max(self.learnt[row]));
+                }
+            }
         }
     }
 
@@ -271,11 +309,17 @@ impl Ladder {
         let Estimate { value, rounding, truncation, size, resolved } = found;
         let error = rounding + truncation;
         let shorter = self.high[row] != UNKNOWN && rung < self.high[row];
-        let grows = shorter && truncation > rounding && truncation >= self.coarse[row];
-        let noise = 0.5 * truncation * h;
+        // shorter steps that agree on another value than a longer one, beyond what both may miss
+        let moved = (value - self.derivative[row]).abs();
+        let both = resolved && self.resolved[row] && self.size[row] > 0.0;
+        let contradicts = shorter && both && moved > CONTRADICTION * (error + self.error[row]);
+        let grows =
+            contradicts || shorter && truncation > rounding && truncation >= self.coarse[row];
+        let noise = 0.5 * h * if contradicts { moved } else { truncation };
         let noisy = grows && noise <= NOISE * (g.abs() + 4.0 * h * size);
+        let refuted = contradicts && noisy;
         // a longer step that did not see what is here is worth nothing
-        let better = error < self.error[row] && (resolved || !self.resolved[row]);
+        let better = error < self.error[row] && (resolved || !self.resolved[row]) && !refuted;
         if better || unseen || grows && !noisy || resolved && !self.resolved[row] {
             (self.derivative[row], self.error[row], self.size[row]) = (value, error, size);
             self.resolved[row] = resolved;
@@ -284,15 +328,15 @@ impl Ladder {
         // would be better
         let good = error <= ENOUGH * value.abs();
         let fair = error <= ENOUGH * size && truncation <= 10.0 * rounding;
-        if resolved && (good || fair) {
+        if resolved && (good || fair) && !refuted {
             self.open[row] = false;
         }
-        if truncation <= rounding {
+        if truncation <= rounding && !refuted {
             self.low[row] = if self.low[row] == UNKNOWN { rung } else { self.low[row].max(rung) };
             return true;
         }
         if noisy {
-            // what grows as the step becomes shorter is rounding
+            // what grows as the step becomes shorter is rounding; steps of powers of two may share it
             self.learnt[row] = self.learnt[row].max(noise);
             self.low[row] = if self.low[row] == UNKNOWN { rung } else { self.low[row].max(rung) };
             let there = f64::from(self.high[row]).exp2() * self.unit[row];
