@@ -21,6 +21,10 @@ const SAMPLES: usize = 64;
 const LEAST: f64 = 0.02;
 const RATIO: f64 = 1.5;
 const MOST: f64 = 1.0;
+/// Where the equations have no solution at an amplitude before two agree, smaller ones are tried: from
+/// this part of it, down to the least.
+const SMALLER: f64 = 0.2;
+const SMALLEST: f64 = 1e-4;
 /// The strongest harmonic is that much above those that no polygon makes.
 const CLEAR: f64 = 300.0;
 /// Relative to the radial part, what a continuous symmetry leaves at an amplitude where anything shows.
@@ -100,8 +104,17 @@ impl<P: Problem> Reduced<'_, '_, '_, P> {
         let mut before: Option<Vec<Ray>> = None;
         let mut confirmed = false;
         let mut amplitude = LEAST;
-        while amplitude <= MOST {
-            let Ok(samples) = self.samples(amplitude) else { break };
+        let mut beyond = f64::INFINITY;
+        while amplitude <= MOST && amplitude < beyond {
+            let Ok(samples) = self.samples(amplitude) else {
+                // natural amplitudes are known to a factor of some
+                if confirmed || amplitude <= SMALLEST {
+                    break;
+                }
+                (before, beyond) = (None, amplitude);
+                amplitude *= SMALLER;
+                continue;
+            };
             let spectrum = harmonics(&samples);
             let (signal, floor) = strength(&spectrum);
             let size = amplitude * amplitude;

@@ -29,6 +29,14 @@ const ROUNDING: f64 = 1e-8;
 /// whose singular point is found in place of the exact one.
 const ENTRIES: f64 = 2.0 * f64::EPSILON;
 
+/// Corrections below this, in natural amplitudes, and this part of the one before, leave the quadratic
+/// form as it is: the iteration then shrinks by about as much each time, without differences.
+const SETTLED: f64 = 2e-2;
+const FAST: f64 = 0.1;
+
+/// Natural amplitudes that differ by less are one.
+const ALIKE: f64 = 10.0;
+
 /// Corrections longer than this, in natural amplitudes, lead astray.
 const LONGEST: f64 = 10.0;
 /// Least part of a correction that is taken where the whole has no value.
@@ -250,8 +258,9 @@ pub(crate) fn find<P: Problem>(
     }
     let mut amplitude = Vec::new();
     let mut last = f64::INFINITY;
+    let mut known = None;
     for iteration in 0..MAX_ITERATIONS {
-        let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent)?;
+        let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, known.take())?;
         let residual: Vec<f64> = probe.residual.iter().map(|r| -r).collect();
         let (mut step, beta) = frame.solve(probe, &residual);
         let y = least_squares(&local.matrix(), &local.defect()).ok_or(Failure::NoConvergence)?;
@@ -274,6 +283,9 @@ pub(crate) fn find<P: Problem>(
         if converged || stagnant {
             return finish(probe, frame, z, amplitude, tangent, correction, &beta);
         }
+        // of larger kernels the vectors may turn within their span
+        let settled = k == 1 && correction <= SETTLED && correction <= FAST * last;
+        known = settled.then_some(local.form);
         last = correction;
         // a state without a value is met by a shorter correction
         let mut part = 1.0;
@@ -304,7 +316,7 @@ fn finish<P: Problem>(
     frame.renew(probe).ok_or(Failure::NoConvergence)?;
     frame.turn(probe, tangent).ok_or(Failure::NoConvergence)?;
     amplitude.clear();
-    let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent)?;
+    let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, None)?;
     // lengths, in natural amplitudes, over which the quadratic form makes the defect and the
     // unfolding
     let x = &amplitude;
@@ -341,12 +353,14 @@ struct Local {
 }
 
 impl Local {
+    /// `known` is the form of a point near by, whose differences are saved.
     fn of<P: Problem>(
         probe: &mut Probe<'_, P>,
         frame: &mut Frame,
         z: &Extended,
         amplitude: &mut Vec<f64>,
         tangent: &Extended,
+        known: Option<Vec<Vec<Vec<f64>>>>,
     ) -> Result<Self, Failure> {
         let k = frame.k;
         let (mut right, mut g) = (Vec::new(), vec![Vec::new(); k]);
@@ -361,26 +375,10 @@ impl Local {
         if amplitude.is_empty() {
             *amplitude = amplitudes(probe, z, &right, tangent)?;
         }
-        let mut form = vec![vec![vec![0.0; k + 1]; k + 1]; k];
-        let all: Vec<&Extended> = right.iter().collect();
-        for (l, v) in right.iter().enumerate() {
-            let second = probe.second(z, v, amplitude[l], &all)?;
-            for (j, w) in left.iter().enumerate() {
-                for (i, y) in second.iter().enumerate() {
-                    form[j][i][l] = crate::step::dot(w, y);
-                }
-            }
-        }
-        // differences in both orders: their mean is symmetric; along the branch itself a step is a
-        // part of the parameter's range, whatever happens within, along the others of a natural one
-        for f in &mut form {
-            for i in 0..=k {
-                for l in 0..i {
-                    let mean = if l == 0 { f[0][i] } else { 0.5 * (f[i][l] + f[l][i]) };
-                    (f[i][l], f[l][i]) = (mean, mean);
-                }
-            }
-        }
+        let form = match known {
+            Some(form) => form,
+            None => quadratic_form(probe, z, (&right, &left), amplitude)?,
+        };
         let norm = |x: &[f64]| crate::step::dot(x, x).sqrt();
         let widest = right.iter().zip(&*amplitude).map(|(v, x)| norm(&v.u) * x);
         let widest = widest.fold(0.0, f64::max);
@@ -438,6 +436,37 @@ impl Local {
     }
 }
 
+/// `form[j][i][l] = w_jᵀ F_zz[v_i, v_l]`, by differences along each right vector.
+fn quadratic_form<P: Problem>(
+    probe: &mut Probe<'_, P>,
+    z: &Extended,
+    (right, left): (&[Extended], &[Vec<f64>]),
+    amplitude: &[f64],
+) -> Result<Vec<Vec<Vec<f64>>>, EvalError> {
+    let k = left.len();
+    let mut form = vec![vec![vec![0.0; k + 1]; k + 1]; k];
+    let all: Vec<&Extended> = right.iter().collect();
+    for (l, v) in right.iter().enumerate() {
+        let second = probe.second(z, v, amplitude[l], &all)?;
+        for (j, w) in left.iter().enumerate() {
+            for (i, y) in second.iter().enumerate() {
+                form[j][i][l] = crate::step::dot(w, y);
+            }
+        }
+    }
+    // differences in both orders: their mean is symmetric; along the branch itself a step is a
+    // part of the parameter's range, whatever happens within, along the others of a natural one
+    for f in &mut form {
+        for i in 0..=k {
+            for l in 0..i {
+                let mean = if l == 0 { f[0][i] } else { 0.5 * (f[i][l] + f[l][i]) };
+                (f[i][l], f[l][i]) = (mean, mean);
+            }
+        }
+    }
+    Ok(form)
+}
+
 /// Natural amplitudes of the right vectors, measured against what the branch's own direction does
 /// to the Jacobian over the range of the parameter.
 fn amplitudes<P: Problem>(
@@ -453,6 +482,13 @@ fn amplitudes<P: Problem>(
         let reference = super::max_abs(by_branch);
         let found = if reference > 0.0 { probe.amplitude(z, v, reference) } else { None };
         amplitude.push(found.unwrap_or(1.0));
+    }
+    // known to a factor of some: vectors that a symmetry turns into each other have one amplitude
+    let others = &mut amplitude[1..];
+    let least = others.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = others.iter().copied().fold(0.0, f64::max);
+    if most <= ALIKE * least {
+        others.fill((least * most).sqrt());
     }
     Ok(amplitude)
 }

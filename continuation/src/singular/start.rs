@@ -68,6 +68,8 @@ pub(crate) fn branch_point_at<P: Problem>(
     let p = x.p;
     core.place(x, &found.z, &tangent).ok()?;
     x.p = p;
-    let error = found.correction.max(found.gap).max(moved / core.weights.parameter);
+    // how far it was from the start, and how well that is known
+    let known = found.correction.max(found.gap).max(found.resolution);
+    let error = known + moved / core.weights.parameter;
     Some(Begun { crossing, error: error.max(f64::EPSILON) })
 }
