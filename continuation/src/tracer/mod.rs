@@ -89,6 +89,8 @@ pub struct Tracer<'a, P: Problem> {
     first: bool,
     // set until the first step away from a branch point is done
     departure: Option<Departure>,
+    // where a refused step is to end next, between its special points
+    cut: Option<f64>,
     // the latest step that crossed to the other orientation, and where it began
     crossing: Option<f64>,
     anchor: State,
@@ -214,6 +216,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             left_start: false,
             first: true,
             departure: None,
+            cut: None,
             crossing: None,
             anchor: start.clone(),
             anchor_s: 0.0,
@@ -389,11 +392,12 @@ impl<'a, P: Problem> Tracer<'a, P> {
                         self.anchor.copy_from(&self.current);
                         self.anchor_s = self.s;
                     }
-                    h *= match refusal {
-                        Refusal::Evaluation(_) => 0.4,
+                    h = match (&refusal, self.cut.take()) {
+                        (_, Some(between)) => between,
+                        (Refusal::Evaluation(_), _) => 0.4 * h,
                         // not a part of the step that comes back to the same point
-                        Refusal::OnSpecialPoint => 0.618,
-                        _ => 0.5,
+                        (Refusal::OnSpecialPoint, _) => 0.618 * h,
+                        _ => 0.5 * h,
                     };
                     if let Some(zoomed) = self.zoom_in(&refusal, h) {
                         h = zoomed;
@@ -421,6 +425,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
 
     /// Tries a step of scaled length `h`.
     fn attempt(&mut self, h: f64, final_say: bool) -> Result<(), Refusal> {
+        self.cut = None;
         self.predict(h);
         let before = self.core.statistics.newton_iterations;
         let (h, corrected) = match self.meets_bound(h) {

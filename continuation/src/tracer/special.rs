@@ -17,6 +17,9 @@ use crate::step::{Constraint, Core, Precision, Refusal, State};
 /// point towards which it left the domain.
 const BRACKET: f64 = 1e-3;
 
+/// Bisections by which a change of the count by several is divided into its parts.
+const DIVISIONS: usize = 6;
+
 /// A located special point of a step.
 pub(super) struct Special {
     pub(super) candidate: Candidate,
@@ -198,7 +201,18 @@ impl<P: Problem> Tracer<'_, P> {
             eigenvectors: Vec::new(),
             state: one.state,
         };
-        match locate_branch_points(core, a, b, h, kernel, &SEEDS, final_say) {
+        let mut seeds = SEEDS.to_vec();
+        if kernel > 1 && !final_say {
+            match divide(core, a, b, h, work) {
+                Divided::Between(at) => {
+                    self.cut = Some(at);
+                    return Err(Refusal::SeveralEvents);
+                }
+                Divided::Together(at) => seeds = vec![at / h],
+                Divided::Unknown => {}
+            }
+        }
+        match locate_branch_points(core, a, b, h, kernel, &seeds, final_say) {
             Ok(found) => located.extend(found.into_iter().map(special)),
             // Newton's method left the domain, as it does where thin films forbid a long way: the point
             // is bracketed first, on the branch
@@ -451,6 +465,56 @@ impl<P: Problem> Tracer<'_, P> {
             Candidate::Parameter { role: Role::Landing, .. } => Some(EventKind::Target),
             Candidate::Parameter { .. } => None,
         }
+    }
+}
+
+/// What the counts within a step say of a change by several.
+enum Divided {
+    /// A part of it happens before this distance, the rest behind.
+    Between(f64),
+    /// All of it happens near this distance, as far as was looked.
+    Together(f64),
+    /// There are no counts, or no states.
+    Unknown,
+}
+
+/// Bisects the step from `a` to `b` by the count, which is cheaper than Newton's method for several modes
+/// that are critical at different places.
+fn divide<P: Problem>(
+    core: &mut Core<'_, P>,
+    a: &State,
+    b: &State,
+    h: f64,
+    x: &mut State,
+) -> Divided {
+    let (Some(before), Some(after)) = (a.count, b.count) else { return Divided::Unknown };
+    let bend = bend(core, a, b);
+    let counted = core.counted();
+    let (mut lo, mut hi) = (0.0, h);
+    let mut divided = None;
+    for _ in 0..DIVISIONS {
+        let at = 0.5 * (lo + hi);
+        interpolate(a, b, h, bend, at, x);
+        if core.correct(Constraint::Plane(a, at), x, Precision::Event).is_err() {
+            break;
+        }
+        match x.count {
+            Some(count) if count == before => lo = at,
+            Some(count) if count == after => hi = at,
+            Some(count)
+                if count.abs_diff(before) + count.abs_diff(after) == before.abs_diff(after) =>
+            {
+                divided = Some(at);
+                break;
+            }
+            _ => break,
+        }
+    }
+    core.set_counted(counted);
+    match divided {
+        Some(at) => Divided::Between(at),
+        None if hi - lo < h => Divided::Together(0.5 * (lo + hi)),
+        None => Divided::Unknown,
     }
 }
 

@@ -107,6 +107,9 @@ fn check<J: Entries>(n: usize, max_step: Option<f64>) {
     let settings = Settings { target: Some(0.03), max_step, ..Settings::default() };
     let branch = trace_with(&problem, 1.2, settings);
     assert_eq!(branch.stopped.reason, StopReason::Target, "{n}: {:?}", branch.stopped);
+    let cost = branch.statistics.newton_iterations;
+    // steps over several points are divided by the counts, not by failures of Newton's method
+    assert!(cost <= 2000, "{n}: {cost} assemblies");
     let points: Vec<_> = branch.events_of(&EventKind::BranchPoint).collect();
     let found: Vec<f64> = points.iter().map(|e| e.p).collect();
     assert_eq!(found.len(), 5, "{n}: {found:?}, {:?}", branch.stopped);
