@@ -3,6 +3,7 @@
 pub mod branch;
 mod by_reference;
 pub mod codim2;
+pub mod cycles;
 pub mod deflation;
 mod derivative_check;
 pub mod diagram;
