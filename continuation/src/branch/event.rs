@@ -29,6 +29,10 @@ pub enum EventKind {
     GeneralisedHopf,
     /// A Hopf point at which a second pair of eigenvalues crosses the imaginary axis.
     DoubleHopf,
+    /// A Floquet multiplier of a cycle is −1: cycles of twice the period are born ([`crate::cycles`]).
+    PeriodDoubling,
+    /// A pair of complex Floquet multipliers of a cycle lies on the unit circle: a torus is born.
+    NeimarkSacker,
     /// A zero of the named observable.
     Zero(String),
     /// A local minimum of the named observable along the branch.
@@ -56,6 +60,8 @@ impl fmt::Display for EventKind {
             EventKind::ZeroHopf => write!(f, "zero-hopf"),
             EventKind::GeneralisedHopf => write!(f, "generalised-hopf"),
             EventKind::DoubleHopf => write!(f, "double-hopf"),
+            EventKind::PeriodDoubling => write!(f, "period-doubling"),
+            EventKind::NeimarkSacker => write!(f, "neimark-sacker"),
             EventKind::Zero(name) => write!(f, "zero-{name}"),
             EventKind::Minimum(name) => write!(f, "{name}-minimum"),
             EventKind::Maximum(name) => write!(f, "{name}-maximum"),

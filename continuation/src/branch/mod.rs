@@ -60,6 +60,11 @@ pub enum StopReason {
     /// The unknowns grow without bound while the parameter comes to rest: to more than 1e7 times
     /// their size at the start, or 1e7 if that is less than 1.
     Unbounded,
+    /// The period of the cycles grows without bound while the parameter comes to rest: they approach a
+    /// homoclinic or heteroclinic orbit ([`crate::cycles`]).
+    PeriodUnbounded,
+    /// The cycles shrink to an equilibrium, a Hopf point ([`crate::cycles`]).
+    CyclesVanish,
     /// The branch came back over its start, against its direction.
     ReturnedToStart,
     /// The branch goes on as one that is known already ([`crate::diagram`]).
@@ -71,8 +76,8 @@ pub enum StopReason {
 impl StopReason {
     /// Whether the branch was traced as far as it was asked to be.
     pub fn is_complete(self) -> bool {
-        use StopReason::{ClosedLoop, Domain, Retraced, Target};
-        matches!(self, Target | ClosedLoop | Domain | Retraced)
+        use StopReason::{ClosedLoop, CyclesVanish, Domain, Retraced, Target};
+        matches!(self, Target | ClosedLoop | Domain | Retraced | CyclesVanish)
     }
 }
 
@@ -86,6 +91,8 @@ impl fmt::Display for StopReason {
             StopReason::StepTooSmall => "step-too-small",
             StopReason::BranchesTooClose => "branches-too-close",
             StopReason::Unbounded => "unbounded",
+            StopReason::PeriodUnbounded => "period-unbounded",
+            StopReason::CyclesVanish => "cycles-vanish",
             StopReason::ReturnedToStart => "returned-to-start",
             StopReason::Retraced => "retraced",
             StopReason::Interrupted => "interrupted",

@@ -209,6 +209,50 @@ impl<'a, P: Problem> CycleProblem<'a, P> {
         Ok(())
     }
 
+    /// The solution `w` of the linearised equations with `w(T) = −w(0)`, at the nodes, of length 1 in the
+    /// metric: of a cycle with a multiplier −1, by inverse iteration. `None` where it is not finite.
+    pub(super) fn flip(&self, x: &[f64], p: &[f64]) -> Result<Option<Vec<f64>>, EvalError> {
+        let size = self.dim();
+        let mut matrix = CycleMatrix::new(self.n, self.basis.degree, self.intervals(), -1.0);
+        self.assemble(&mut self.work.borrow_mut(), x, p, &mut matrix)?;
+        for block in &mut matrix.blocks {
+            block.column.fill(0.0);
+            block.row.fill(0.0);
+            block.row_left.fill(0.0);
+        }
+        matrix.corner = 1.0;
+        matrix.factor(0.0);
+        let mut w: Vec<f64> = (0..size).map(|i| crate::singular::arbitrary(5, i)).collect();
+        let mut y = vec![0.0; size];
+        for _ in 0..3 {
+            w[size - 1] = 0.0;
+            matrix.solve(&mut w);
+            self.metric(&w, &mut y);
+            let norm = dot(&w, &y).max(0.0).sqrt();
+            w.iter_mut().for_each(|x| *x /= norm);
+        }
+        w.pop();
+        Ok(w.iter().all(|x| x.is_finite()).then_some(w))
+    }
+
+    /// Cosine between the derivatives of the orbit and of the reference.
+    pub(super) fn alignment(&self, x: &[f64]) -> f64 {
+        let (n, m) = (self.n, self.basis.degree);
+        let Work { u, du, f, .. } = &mut *self.work.borrow_mut();
+        let (mut along, mut square) = (0.0, 0.0);
+        for j in 0..self.intervals() {
+            let h = self.mesh[j + 1] - self.mesh[j];
+            for i in 0..m {
+                self.interpolate(x, (j, i), u, du);
+                let at = (j * m + i) * n;
+                along += dot(&self.phase[at..at + n], du) / h;
+                self.problem.metric(du, f);
+                square += self.basis.weights[i] * dot(du, f) / h;
+            }
+        }
+        along / square.sqrt()
+    }
+
     /// State and derivative, times the interval's length, at Gauss point `i` of interval `j`.
     fn interpolate(&self, x: &[f64], (j, i): (usize, usize), u: &mut [f64], du: &mut [f64]) {
         let orbit = self.orbit(x);

@@ -22,9 +22,9 @@ pub struct Multiplier {
     pub log_modulus: f64,
     /// The argument of `μ`, in `(−π, π]`: 0 or `π` for real ones.
     pub argument: f64,
-    /// Estimated relative error of `μ`: the deviation of the trivial multiplier from 1, or the change
-    /// when all intervals are halved, whichever is larger; NaN where neither is known.
-    pub error: f64,
+    /// Estimated relative error of `μ`: the change when all intervals are halved, plus the deviation of
+    /// the trivial multiplier from 1; `None` where it is not known.
+    pub error: Option<f64>,
 }
 
 impl Multiplier {
@@ -44,6 +44,10 @@ impl Multiplier {
     pub fn modulus(&self) -> f64 {
         self.log_modulus.exp()
     }
+
+    /// The number 1.
+    pub(super) const ONE: Multiplier =
+        Multiplier { log_modulus: 0.0, argument: 0.0, error: None };
 
     /// Relative distance of two multipliers, `|μ − ν| / |ν|`, infinite where it is very large.
     pub(super) fn distance(&self, other: &Multiplier) -> f64 {
@@ -150,7 +154,7 @@ fn of_block(
             negative ^= entry(j, 0, 0) < 0.0;
         }
         let argument = if negative { std::f64::consts::PI } else { 0.0 };
-        return Some(vec![Multiplier { log_modulus: log, argument, error: f64::NAN }]);
+        return Some(vec![Multiplier { log_modulus: log, argument, error: None }]);
     }
     let mut product = vec![0.0; k * k];
     (0..k).for_each(|i| product[i + i * k] = 1.0);
@@ -166,7 +170,7 @@ fn of_block(
         }
         let size = next.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         if size == 0.0 {
-            let zero = Multiplier { log_modulus: f64::NEG_INFINITY, argument: 0.0, error: f64::NAN };
+            let zero = Multiplier { log_modulus: f64::NEG_INFINITY, argument: 0.0, error: None };
             return Some(vec![zero; k]);
         }
         log += size.ln();
@@ -183,7 +187,7 @@ fn of_block(
     };
     let multiplier = |(re, im): (f64, f64)| {
         let argument = if im == 0.0 && re < 0.0 { std::f64::consts::PI } else { im.atan2(re) };
-        Multiplier { log_modulus: log + re.hypot(im).ln(), argument, error: f64::NAN }
+        Multiplier { log_modulus: log + re.hypot(im).ln(), argument, error: None }
     };
     Some(values.into_iter().map(multiplier).collect())
 }

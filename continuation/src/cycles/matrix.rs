@@ -99,12 +99,6 @@ impl CycleMatrix {
         self.blocks.len()
     }
 
-    /// The unknowns of interval `j` other than those at its left end, without the last `n`.
-    fn inside(&self, j: usize) -> std::ops::Range<usize> {
-        let k = self.n * self.m;
-        j * k + self.n..(j + 1) * k
-    }
-
     /// Where the right end of interval `j` is, and its factor.
     fn right(&self, j: usize) -> (usize, f64) {
         let k = self.n * self.m;

@@ -26,6 +26,7 @@ mod narrow;
 mod out_of_points;
 mod plateau;
 mod restart;
+mod resume;
 mod snapshot;
 mod special;
 mod switching;
@@ -34,6 +35,7 @@ mod zoom;
 
 pub use both_ways::both_ways;
 pub use input::{Progress, TraceError};
+pub(crate) use resume::Baton;
 pub(crate) use snapshot::Snapshot;
 
 use crate::branch::{Branch, Doubt, Event, Point, Statistics, Stop, StopReason};
