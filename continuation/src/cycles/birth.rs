@@ -1,4 +1,5 @@
-//! Small cycles: those born at a Hopf point, and those of twice the period at a period doubling.
+//! Small cycles born at a Hopf point, those of twice the period at a period doubling, and those that cross
+//! at a branch point.
 //!
 //! A small multiple `ε` of the critical mode is added to what bifurcates, and Newton's method solves for
 //! the cycle whose part along the mode is `ε`: the parameter and the period are unknowns, so that it does
@@ -108,6 +109,38 @@ impl SmallCycle {
         let base = Cycle { mesh, values, period: 2.0 * single.period, ..single.clone() };
         leave(problem, which, &base, direction, single.amplitude(), settings)
     }
+
+    /// A cycle on a branch that crosses at a branch point of cycles, along the direction number `index` of
+    /// [`Crossing::leaving`](crate::Crossing::leaving), or against it.
+    ///
+    /// # Errors
+    /// When the event is no branch point of a branch of this problem, it has no such direction, the
+    /// direction changes the parameter alone, or no cycle is found along it.
+    pub fn at_branch_point<P: Problem>(
+        problem: &P,
+        cycles: &CycleBranch,
+        event: &Event,
+        index: usize,
+        forward: bool,
+        settings: &CycleSettings,
+    ) -> Result<Self, CycleError> {
+        settings.validate()?;
+        let wanted = EventKind::BranchPoint;
+        if event.kind != wanted {
+            return Err(CycleError::Kind { found: event.kind.clone(), wanted });
+        }
+        let (which, p) = place(problem, &cycles.branch, event)?;
+        let at = cycles.cycles.get(event.point).ok_or(foreign("it has no such point"))?;
+        let base = Cycle { parameters: p, ..at.cycle.clone() };
+        let leaving = event.crossing().and_then(|crossing| crossing.leaving.get(index));
+        let leaving = leaving.ok_or(foreign("the event has no such direction"))?;
+        if leaving.du.len() != base.values.len() + 1 {
+            return Err(foreign("the dimensions differ"));
+        }
+        let sign = if forward { 1.0 } else { -1.0 };
+        let direction = leaving.du[..base.values.len()].iter().map(|d| sign * d).collect();
+        leave(problem, which, &base, direction, base.amplitude(), settings)
+    }
 }
 
 fn foreign(what: &'static str) -> CycleError {
@@ -160,17 +193,17 @@ fn leave<P: Problem>(
     direction.iter_mut().for_each(|d| *d /= norm);
     for _ in 0..MOST {
         let equations = CycleProblem::new(problem, &shifted(epsilon, &direction))?;
-        let weights = Weights {
-            unknowns: epsilon,
-            parameter: problem.parameters()[which.0].scale.abs(),
-        };
+        let weights =
+            Weights { unknowns: epsilon, parameter: problem.parameters()[which.0].scale.abs() };
         match correct(&equations, which, base, &direction, epsilon, weights) {
             Ok((cycle, first)) => {
                 let far = first > CORRECTION[1];
                 if !far || best.is_none() {
                     best = Some(cycle);
                 }
-                if !far && (shrinking || first > CORRECTION[0]) || far && !shrinking && best.is_some() && first < 0.5 {
+                if !far && (shrinking || first > CORRECTION[0])
+                    || far && !shrinking && best.is_some() && first < 0.5
+                {
                     break;
                 }
                 shrinking |= far;

@@ -6,12 +6,17 @@ use super::floquet::{Multiplier, multipliers};
 use super::matrix::CycleMatrix;
 use super::mesh::Orbit;
 use crate::linalg::{Dense, Matrix};
-use crate::problem::{EvalError, ParamId, Parameter, Problem, Stability, check_finite, check_pattern};
+use crate::problem::{
+    EvalError, ParamId, Parameter, Problem, Stability, check_finite, check_pattern,
+};
 use crate::step::dot;
 use std::cell::RefCell;
 
 /// Largest number of unknowns of an interval, `n m`: its block is dense.
 pub const MAX_BLOCK: usize = 800;
+
+/// Range of an orbit, relative to its largest value, below which it is a single state to rounding.
+const CONSTANT: f64 = 1e-12;
 
 /// Name of the period among the observables.
 pub(super) const PERIOD: &str = "period";
@@ -113,7 +118,7 @@ impl<'a, P: Problem> CycleProblem<'a, P> {
         }
         let norm = square.sqrt();
         let size = crate::linalg::max_abs(&cycle.values);
-        if !(norm.is_finite() && norm > 0.0 && norm > 1e-14 * size * f64::from(u8::from(size > 0.0))) {
+        if !(norm.is_finite() && norm > 0.0 && cycle.amplitude() > CONSTANT * size) {
             return Err(CycleError::Constant);
         }
         phase.iter_mut().for_each(|x| *x /= norm);
@@ -352,11 +357,19 @@ fn normalised(values: impl Iterator<Item = (f64, f64)>, z: f64) -> f64 {
     for (log, argument) in values {
         // large numbers by their reciprocals: a common factor
         let (value, one) = if log > 0.0 {
-            let turn = if argument.abs() == std::f64::consts::PI { (-1.0, 0.0) } else { (argument.cos(), argument.sin()) };
+            let turn = if argument.abs() == std::f64::consts::PI {
+                (-1.0, 0.0)
+            } else {
+                (argument.cos(), argument.sin())
+            };
             (turn, (-log).exp())
         } else {
             let size = log.exp();
-            let turn = if argument.abs() == std::f64::consts::PI { (-size, 0.0) } else { (size * argument.cos(), size * argument.sin()) };
+            let turn = if argument.abs() == std::f64::consts::PI {
+                (-size, 0.0)
+            } else {
+                (size * argument.cos(), size * argument.sin())
+            };
             (turn, 1.0)
         };
         product = times(product, (value.0 - z * one, value.1));
@@ -393,7 +406,11 @@ impl<P: Problem> Problem for CycleProblem<'_, P> {
         let Work { u, du, f, .. } = &mut *self.work.borrow_mut();
         let period = x[end] / self.unit;
         if period.is_nan() || period <= 0.0 {
-            return Err(EvalError::Inadmissible { what: "the period is not positive", at: end, value: period });
+            return Err(EvalError::Inadmissible {
+                what: "the period is not positive",
+                at: end,
+                value: period,
+            });
         }
         r[end] = 0.0;
         for j in 0..self.intervals() {

@@ -23,10 +23,14 @@ pub enum CycleError {
     #[error("cycles need a problem with `Stability::Dynamics`: M du/dt = f(u, p)")]
     NoDynamics,
     /// The mass matrix is singular.
-    #[error("cycles need a mass matrix of full rank; equations without a derivative are not supported")]
+    #[error(
+        "cycles need a mass matrix of full rank; equations without a derivative are not supported"
+    )]
     SingularMass,
     /// Too many unknowns for a dense block.
-    #[error("an interval would have {size} unknowns, in a dense block; at most {most} are supported")]
+    #[error(
+        "an interval would have {size} unknowns, in a dense block; at most {most} are supported"
+    )]
     TooLarge {
         /// Unknowns of an interval: those of the problem times the degree.
         size: usize,
@@ -75,7 +79,9 @@ pub enum CycleError {
     #[error("the special point has no critical eigenvector: it was not computed there")]
     NoEigenvector,
     /// No cycle of small amplitude was found.
-    #[error("no small cycle of amplitude {amplitude:.2e} or less near the special point: {refusal}")]
+    #[error(
+        "no small cycle of amplitude {amplitude:.2e} or less near the special point: {refusal}"
+    )]
     NoSmallCycle {
         /// The last amplitude tried.
         amplitude: f64,
@@ -167,9 +173,7 @@ impl Cycle {
                 let weight: f64 = (nodes.clone().filter(|k| *k != i))
                     .map(|k| (t - times[k]) / (times[i] - times[k]))
                     .product();
-                out.iter_mut()
-                    .zip(&states[i * n..(i + 1) * n])
-                    .for_each(|(o, x)| *o += weight * x);
+                out.iter_mut().zip(&states[i * n..(i + 1) * n]).for_each(|(o, x)| *o += weight * x);
             }
         };
         let scales: Vec<f64> = (0..n)
@@ -234,7 +238,10 @@ impl Cycle {
         let increases = self.mesh.windows(2).all(|w| w[0] < w[1]);
         let ends = self.mesh.first() == Some(&0.0) && self.mesh.last() == Some(&1.0);
         if !(increases && ends) {
-            return Err(CycleError::Samples { what: "the mesh does not increase from 0 to 1", at: 0 });
+            return Err(CycleError::Samples {
+                what: "the mesh does not increase from 0 to 1",
+                at: 0,
+            });
         }
         if !(2..=7).contains(&self.degree) {
             return Err(CycleError::Shape { what: "the degree", got: self.degree, expected: 4 });
@@ -260,8 +267,7 @@ impl Cycle {
     /// The same orbit, interpolated on another mesh.
     pub(super) fn on(&self, mesh: Vec<f64>) -> Cycle {
         let basis = Basis::new(self.degree);
-        let orbit =
-            Orbit { n: self.dim(), mesh: &self.mesh, values: &self.values, basis: &basis };
+        let orbit = Orbit { n: self.dim(), mesh: &self.mesh, values: &self.values, basis: &basis };
         let values = orbit.on(&mesh, self.degree);
         Cycle { values, mesh, ..self.clone() }
     }
@@ -282,9 +288,8 @@ impl Cycle {
         let n = self.dim();
         let range = |i: usize| {
             let values = self.values.iter().skip(i).step_by(n);
-            let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| {
-                (lo.min(*v), hi.max(*v))
-            });
+            let (lo, hi) = values
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(*v), hi.max(*v)));
             hi - lo
         };
         (0..n).map(range).fold(0.0, f64::max)
@@ -320,8 +325,7 @@ impl Cycle {
             }
             let power = 1.0 / (2.0 * self.degree as f64);
             let grown = (1.3 * (error / settings.accuracy).powf(power)).clamp(1.3, 3.0);
-            intervals =
-                ((intervals as f64 * grown).ceil() as usize).min(settings.max_intervals);
+            intervals = ((intervals as f64 * grown).ceil() as usize).min(settings.max_intervals);
         }
         Ok(cycle)
     }

@@ -94,9 +94,8 @@ impl Cyclic {
             }
             for c in 0..n {
                 let column = &stage.lu[c * rows..(c + 1) * rows];
-                let pivot = (c..rows).fold(c, |best, r| {
-                    if column[r].abs() > column[best].abs() { r } else { best }
-                });
+                let pivot = (c..rows)
+                    .fold(c, |best, r| if column[r].abs() > column[best].abs() { r } else { best });
                 stage.pivots[c] = pivot;
                 if pivot != c {
                     sign = -sign;
@@ -138,16 +137,14 @@ impl Cyclic {
             }
             // the border's row: multiples of the pivot rows that remove this block
             for c in 0..n {
-                let above: f64 =
-                    (0..c).map(|r| stage.multiples[r] * stage.lu[r + c * rows]).sum();
+                let above: f64 = (0..c).map(|r| stage.multiples[r] * stage.lu[r + c * rows]).sum();
                 stage.multiples[c] = (q[j * n + c] - above) / stage.lu[c + c * rows];
             }
             let next = (j + 1) % (q.len() / n);
             let factor = if next == 0 { closing } else { 1.0 };
             for c in 0..n {
-                let dot = |a: &[f64]| -> f64 {
-                    (0..n).map(|r| stage.multiples[r] * a[r + c * n]).sum()
-                };
+                let dot =
+                    |a: &[f64]| -> f64 { (0..n).map(|r| stage.multiples[r] * a[r + c * n]).sum() };
                 let (by_first, by_next) = (dot(&stage.first), dot(&stage.next));
                 q[c] -= by_first;
                 q[next * n + c] -= factor * by_next;

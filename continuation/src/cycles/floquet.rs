@@ -22,8 +22,9 @@ pub struct Multiplier {
     pub log_modulus: f64,
     /// The argument of `μ`, in `(−π, π]`: 0 or `π` for real ones.
     pub argument: f64,
-    /// Estimated relative error of `μ`: the change when all intervals are halved, plus the deviation of
-    /// the trivial multiplier from 1; `None` where it is not known.
+    /// Estimated error of `ln μ`, the relative error of `μ` where it is small: one and a half times the
+    /// change when all intervals are halved, plus the deviation of the trivial multiplier from 1, plus
+    /// rounding; `None` where it is not known.
     pub error: Option<f64>,
 }
 
@@ -46,19 +47,17 @@ impl Multiplier {
     }
 
     /// The number 1.
-    pub(super) const ONE: Multiplier =
-        Multiplier { log_modulus: 0.0, argument: 0.0, error: None };
+    pub(super) const ONE: Multiplier = Multiplier { log_modulus: 0.0, argument: 0.0, error: None };
 
-    /// Relative distance of two multipliers, `|μ − ν| / |ν|`, infinite where it is very large.
+    /// `|ln μ − ln ν|`: the relative distance where that is small.
     pub(super) fn distance(&self, other: &Multiplier) -> f64 {
-        if self.log_modulus == f64::NEG_INFINITY && other.log_modulus == f64::NEG_INFINITY {
+        let zero = f64::NEG_INFINITY;
+        if self.log_modulus == zero && other.log_modulus == zero {
             return 0.0;
         }
-        let ratio = (self.log_modulus - other.log_modulus).exp();
-        let turn = self.argument - other.argument;
-        // |ratio e^{i turn} − 1|, without cancellation
-        let half = (0.5 * turn).sin();
-        (ratio - 1.0).hypot(2.0 * half * ratio.sqrt())
+        let turn = (self.argument - other.argument).abs();
+        let turn = turn.min(std::f64::consts::TAU - turn);
+        (self.log_modulus - other.log_modulus).hypot(turn)
     }
 }
 
@@ -97,9 +96,8 @@ pub(super) fn multipliers(
             return None;
         }
         // how the subspaces moved in the last round
-        let turned = |r: usize, c: usize| -> f64 {
-            (0..n).map(|k| start[k + r * n] * q[k + c * n]).sum()
-        };
+        let turned =
+            |r: usize, c: usize| -> f64 { (0..n).map(|k| start[k + r * n] * q[k + c * n]).sum() };
         let mut between = vec![0.0; n * n];
         for c in 0..n {
             (0..n).for_each(|r| between[r + c * n] = turned(r, c));
@@ -260,7 +258,8 @@ mod tests {
     use super::multipliers;
 
     fn random(seed: &mut u64) -> f64 {
-        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        *seed =
+            seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 

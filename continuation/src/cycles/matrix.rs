@@ -136,8 +136,7 @@ impl Matrix for CycleMatrix {
             let (right, factor) = self.right(j);
             for c in 0..k {
                 let inside = c < k - n;
-                let value =
-                    if inside { x[j * k + n + c] } else { factor * x[right + c + n - k] };
+                let value = if inside { x[j * k + n + c] } else { factor * x[right + c + n - k] };
                 add(out, value, block.inner.column(c));
                 last += block.row[c] * value;
             }
@@ -207,7 +206,8 @@ impl Matrix for CycleMatrix {
         let mut gathered = std::mem::take(&mut self.condensed);
         for (block, out) in self.blocks.iter().zip(gathered.chunks_exact_mut(n * (n + 1))) {
             for c in 0..n {
-                out[c * n..(c + 1) * n].copy_from_slice(&block.solved[(c + 1) * k - n..(c + 1) * k]);
+                out[c * n..(c + 1) * n]
+                    .copy_from_slice(&block.solved[(c + 1) * k - n..(c + 1) * k]);
             }
             out[n * n..].copy_from_slice(&block.solved_column[k - n..]);
         }
@@ -296,7 +296,8 @@ mod tests {
     use crate::linalg::{Dense, Matrix};
 
     fn random(seed: &mut u64) -> f64 {
-        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        *seed =
+            seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
@@ -306,8 +307,7 @@ mod tests {
             for c in 0..n * m {
                 block.inner.column_mut(c).iter_mut().for_each(|x| *x = random(seed));
             }
-            let parts =
-                [&mut block.left, &mut block.column, &mut block.row_left, &mut block.row];
+            let parts = [&mut block.left, &mut block.column, &mut block.row_left, &mut block.row];
             parts.into_iter().flatten().for_each(|x| *x = random(seed));
         }
         matrix.corner = random(seed);

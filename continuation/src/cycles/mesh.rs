@@ -111,9 +111,8 @@ impl<'o> Orbit<'o> {
     /// Largest difference of the values of unknown `i`; 0 where that is rounding.
     fn range(&self, i: usize) -> f64 {
         let values = self.values.iter().skip(i).step_by(self.n);
-        let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| {
-            (lo.min(*v), hi.max(*v))
-        });
+        let (lo, hi) =
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(*v), hi.max(*v)));
         if hi - lo > CONSTANT * hi.abs().max(lo.abs()) { hi - lo } else { 0.0 }
     }
 }
@@ -125,8 +124,7 @@ pub(super) fn uniform(intervals: usize) -> Vec<f64> {
 
 /// Every interval in two.
 pub(super) fn halved(mesh: &[f64]) -> Vec<f64> {
-    let mut out: Vec<f64> =
-        mesh.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]).collect();
+    let mut out: Vec<f64> = mesh.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]).collect();
     out.push(1.0);
     out
 }

@@ -172,7 +172,7 @@ impl CyclePoint {
         let others = || self.multipliers.iter().enumerate().filter(|(i, _)| *i != trivial);
         self.unstable = Some(others().filter(|(_, m)| m.log_modulus > 0.0).count());
         let certain = |(_, m): (usize, &Multiplier)| {
-            m.error.is_some_and(|error| error < 0.5 && m.log_modulus.abs() > 2.0 * error)
+            m.error.is_some_and(|error| m.log_modulus.abs() > 2.0 * error)
         };
         let away = others().all(certain);
         self.certified = away && self.error.is_some();
@@ -201,7 +201,10 @@ pub(super) fn columns<P: Problem>(problem: &P) -> Vec<String> {
     } else {
         own.iter().map(|name| (*name).to_owned()).collect()
     };
-    names.iter().flat_map(|name| ["max", "min", "mean"].map(|what| format!("{what}_{name}"))).collect()
+    names
+        .iter()
+        .flat_map(|name| ["max", "min", "mean"].map(|what| format!("{what}_{name}")))
+        .collect()
 }
 
 /// Their values: maximum, minimum and mean over the period.

@@ -40,7 +40,7 @@ impl Default for CycleSettings {
             degree: 4,
             intervals: 30,
             max_intervals: 400,
-            accuracy: 1e-9,
+            accuracy: 1e-10,
             adapt_every: 6,
             period_growth: 5.0,
             check: true,

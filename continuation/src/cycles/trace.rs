@@ -24,6 +24,10 @@ const VANISHED: [f64; 2] = [0.01, 0.2];
 /// Change of the parameter, relative to its range, while the period grows by a factor e, below which the
 /// parameter has come to rest.
 const RESTS: f64 = 1e-6;
+/// Relative difference of periods and extrema of the same cycle on two meshes.
+const SAME: f64 = 1e-6;
+/// What rounding leaves of the parameter at a special point, relative to its value and its range.
+const ROUNDING: f64 = 1e-13;
 /// By how much errors at the neighbours of a branch point are exceeded there.
 const NEIGHBOURS: f64 = 3.0;
 
@@ -167,7 +171,7 @@ impl<'a, P: Problem> Run<'a, '_, P> {
             let event = point.event.and_then(|e| tracer.events().get(e)).cloned();
             self.record(equations, point, event, start);
             count += 1;
-            ended = self.unbounded();
+            ended = self.unbounded().or_else(|| self.closed());
             if ended.is_none() && self.points.len() >= self.settings.max_points {
                 let detail = "the largest number of points was reached".to_owned();
                 ended = Some(Stop { reason: StopReason::MaxPoints, detail });
@@ -185,8 +189,8 @@ impl<'a, P: Problem> Run<'a, '_, P> {
                 break;
             }
             let last = &self.points[self.points.len() - 1];
-            let due = count >= self.cycle_settings.adapt_every
-                || equations.alignment(&last.u) < ALIGNED;
+            let due =
+                count >= self.cycle_settings.adapt_every || equations.alignment(&last.u) < ALIGNED;
             if due && last.event.is_none() && tracer.stopped().is_none() {
                 let baton = tracer.baton(self.range);
                 if baton.at.u == last.u {
@@ -229,8 +233,7 @@ impl<'a, P: Problem> Run<'a, '_, P> {
             // towards what the accuracy asks for, slowly downwards
             intervals *= if ratio > 1.0 { (1.2 * ratio).min(2.0) } else { ratio.max(0.85) };
         }
-        let count =
-            (intervals.ceil() as usize).clamp(settings.intervals, settings.max_intervals);
+        let count = (intervals.ceil() as usize).clamp(settings.intervals, settings.max_intervals);
         let mesh = equations.orbit(&baton.at.u).equidistributed(count);
         let cycle = last.cycle.on(mesh);
         let next = CycleProblem::new(self.problem, &cycle).ok()?;
@@ -269,7 +272,7 @@ impl<'a, P: Problem> Run<'a, '_, P> {
         (point.unstable, point.certified) = (cycle.unstable, cycle.certified);
         point.s += self.base_s;
         let observed = observe(self.problem, &cycle.cycle);
-        let count = 3 * columns(self.problem).len() / 3;
+        let count = columns(self.problem).len();
         point.observables.truncate(1);
         point.observables.extend(observed.unwrap_or_else(|_| vec![f64::NAN; count]));
         point.event = None;
@@ -299,7 +302,7 @@ impl<'a, P: Problem> Run<'a, '_, P> {
             _ => {}
         }
         event.point = self.points.len();
-        let error = event_error(&event, fine);
+        let error = event_error(&event, fine, self.range);
         if let Some((length, _)) = error {
             event.error_estimate += length;
         }
@@ -394,6 +397,33 @@ impl<'a, P: Problem> Run<'a, '_, P> {
         Some(Stop { reason: StopReason::PeriodUnbounded, detail })
     }
 
+    /// The end of the trace where the branch has come back to its start in the same direction: at the
+    /// start's parameter the cycle is the first one.
+    fn closed(&self) -> Option<Stop> {
+        let (Some(first), [.., a, b]) = (self.points.first(), &self.points[..]) else {
+            return None;
+        };
+        let passes = (a.p - first.p) * (b.p - first.p) <= 0.0 && a.p != b.p;
+        if self.points.len() < 5 || !passes || first.dp_ds * b.dp_ds <= 0.0 {
+            return None;
+        }
+        let mut cycle = self.cycles.last()?.cycle.clone();
+        cycle.parameters[self.which.0] = first.p;
+        let again = cycle.solved(self.problem).ok()?;
+        let observed = observe(self.problem, &again).ok()?;
+        let old = &self.cycles.first()?.cycle;
+        let same = |x: f64, y: f64, size: f64| (x - y).abs() <= SAME * size;
+        let size = old.amplitude()
+            + first.observables.iter().skip(1).fold(0.0, |m: f64, x| m.max(x.abs()));
+        let is_same = same(again.period, old.period, old.period)
+            && observed
+                .iter()
+                .zip(first.observables.iter().skip(1))
+                .all(|(x, y)| same(*x, *y, size));
+        let detail = "the branch is a closed loop".to_owned();
+        is_same.then_some(Stop { reason: StopReason::ClosedLoop, detail })
+    }
+
     /// The branch, with the counts beside its events.
     fn finish(mut self, parameter: &str, p: &[f64], stopped: Stop) -> CycleBranch {
         let regular: Vec<usize> = (0..self.points.len())
@@ -414,7 +444,8 @@ impl<'a, P: Problem> Run<'a, '_, P> {
                 && let Some(moved) = moved(self.events[event].point)
             {
                 self.events[event].error_estimate += NEIGHBOURS * moved;
-                self.event_errors[event] = Some(self.events[event].error_estimate);
+                let rounding = ROUNDING * (self.events[event].p.abs() + self.range);
+                self.event_errors[event] = Some(self.events[event].error_estimate + rounding);
             }
         }
         let mut observables = vec![PERIOD.to_owned()];
@@ -510,7 +541,7 @@ fn has_pair(cycle: &CyclePoint) -> bool {
 
 /// The error of a special point from where it lies when every interval is halved: as a length, and that of
 /// the parameter. `None` where that is not known.
-fn event_error(event: &Event, fine: Option<&Finer>) -> Option<(f64, f64)> {
+fn event_error(event: &Event, fine: Option<&Finer>, range: f64) -> Option<(f64, f64)> {
     let fine = fine?;
     let ahead = fine.ahead.as_ref()?;
     let test = |x: &State| match kind(&event.kind) {
@@ -525,6 +556,7 @@ fn event_error(event: &Event, fine: Option<&Finer>) -> Option<(f64, f64)> {
     let p = fine.state.p + steps * (ahead.p - fine.state.p);
     let step = 1e-3 * fine.state.length;
     let length = 2.0 * (fine.moved + steps.abs() * step);
-    let by = 2.0 * (p - event.p).abs() + event.error_estimate;
+    let rounding = ROUNDING * (event.p.abs() + range);
+    let by = 2.0 * (p - event.p).abs() + event.error_estimate + rounding;
     (length.is_finite() && by.is_finite()).then_some((length, by))
 }

@@ -42,12 +42,13 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let mut start = State::new(base.u.len(), problem.observables().len());
         start.u.copy_from_slice(&base.u);
         start.p = base.p;
-        let corrected = core.correct(Constraint::Plane(&base, 0.0), &mut start, Precision::Event)?;
+        let corrected =
+            core.correct(Constraint::Plane(&base, 0.0), &mut start, Precision::Event)?;
         if corrected.first > most {
             return Err(Refusal::FarFromPrediction { ratio: corrected.first });
         }
-        let mut tracer = Self::set_up(core, start, p, settings, baton.range)
-            .map_err(|_| Refusal::Singular)?;
+        let mut tracer =
+            Self::set_up(core, start, p, settings, baton.range).map_err(|_| Refusal::Singular)?;
         tracer.size = baton.size;
         Ok(tracer)
     }
