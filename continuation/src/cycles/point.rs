@@ -4,9 +4,10 @@ use super::collocation::CycleProblem;
 use super::cycle::Cycle;
 use super::floquet::Multiplier;
 use super::mesh::{Orbit, halved};
+use crate::linalg::Bordered;
 use crate::problem::{EvalError, ParamId, Problem};
 use crate::settings::{Counting, Settings};
-use crate::step::{Constraint, Core, Precision, Refusal, State, dot};
+use crate::step::{Constraint, Core, Precision, Refusal, State, Weights, dot};
 use serde::{Deserialize, Serialize};
 
 /// Deviation of the trivial multiplier from 1 above which it is not told from the others: nothing is
@@ -82,20 +83,20 @@ pub(super) fn finer<P: Problem>(
     let (n, m) = (coarse.n, coarse.basis.degree);
     let fine = CycleProblem::new(coarse.problem, &cycle.on(halved(&cycle.mesh))).ok()?;
     let settings = Settings { counting: Counting::Few, ..Settings::default() };
-    let unit = crate::step::Weights { unknowns: cycle.amplitude(), parameter: range };
-    let mut core = Core::new(&fine, which, p, unit, &settings);
-    let mut start = State::new(fine.dim(), 3);
-    start.u = fine.unknowns(&cycle);
-    start.p = p[which.0];
-    core.start(&mut start, true, range).ok()?;
-    let base = start.clone();
+    // the amplitude in the metric, and what the parameter is expected to pass
+    let weights = Weights { unknowns: fine.unit * cycle.period, parameter: range };
+    let mut core = Core::new(&fine, which, p, weights, &settings);
+    let mut base = State::new(fine.dim(), 3);
+    base.u = fine.unknowns(&cycle);
+    base.p = p[which.0];
+    tangent(&fine, which, p, weights, &mut base)?;
     let vertical = base.tp.abs() < VERTICAL * core.weights.parameter;
     let constraint = if across || vertical {
         Constraint::Plane(&base, 0.0)
     } else {
         Constraint::Parameter(&base, base.p)
     };
-    let mut state = start;
+    let mut state = base.clone();
     core.correct(constraint, &mut state, Precision::Event).ok()?;
     let difference: Vec<f64> = state.u.iter().zip(&base.u).map(|(a, b)| a - b).collect();
     let mut y = vec![0.0; fine.dim()];
@@ -109,6 +110,36 @@ pub(super) fn finer<P: Problem>(
     let mesh_values = mesh_values.take(n * coarse.intervals()).collect();
     let period = state.u[fine.dim() - 1] / fine.unit;
     Some(Finer { state, moved, ahead, multipliers, mesh_values, period })
+}
+
+/// The tangent at a state near a solution, of unit length in the scaled metric; `None` where there is none.
+fn tangent<P: Problem>(
+    problem: &CycleProblem<'_, P>,
+    which: ParamId,
+    p: &[f64],
+    weights: Weights,
+    x: &mut State,
+) -> Option<()> {
+    let mut jacobian = problem.new_jacobian();
+    problem.jacobian(&x.u, p, &mut jacobian).ok()?;
+    let mut bordered = Bordered::new(problem.dim(), 1);
+    problem.parameter_derivative(&x.u, p, which, bordered.column_mut(0)).ok()?;
+    // any border that is not orthogonal to the tangent
+    let unit = weights.unknowns * (problem.dim() as f64).sqrt();
+    for (i, c) in bordered.row_mut(0).iter_mut().enumerate() {
+        *c = crate::singular::arbitrary(1, i) / unit;
+    }
+    bordered.set_corner(0, 0, 1.0 / weights.parameter);
+    bordered.factor(&mut jacobian);
+    x.tu.fill(0.0);
+    let mut end = [1.0];
+    bordered.solve(&mut jacobian, &mut x.tu, &mut end);
+    x.tp = end[0];
+    problem.metric(&x.tu, &mut x.mtu);
+    let norm = weights.norm(&x.mtu, &x.tu, x.tp);
+    x.length = (dot(&x.mtu, &x.tu) + x.tp * x.tp).max(0.0).sqrt();
+    x.scale_tangent(1.0 / norm);
+    (norm.is_finite() && norm > 0.0).then_some(())
 }
 
 /// A point a small step along the branch.

@@ -5,7 +5,8 @@ use super::systems::hopf_form;
 use super::{assert_within, follow, follow_by};
 use continuation::cycles::{Cycle, CycleProblem, CycleSettings, Multiplier, SmallCycle};
 use continuation::{
-    DenseProblem, EventKind, Settings, Stability, StopReason, Tracer, check_derivatives,
+    BandProblem, DenseProblem, EventKind, Settings, Stability, StopReason, Tracer,
+    check_derivatives,
 };
 use std::f64::consts::{PI, TAU};
 

@@ -19,7 +19,8 @@ fn unusable_starts_are_typed_errors() {
     let problem = van_der_pol();
     let none = DenseProblem::from_residual(2, &["mu"], |u, p, r| {
         (r[0], r[1]) = (u[1], p[0] * (1.0 - u[0] * u[0]) * u[1] - u[0]);
-    });
+    })
+    .with_stability(Stability::None);
     let near = Cycle::near(&none, &[1.0], 6.6, relaxation, &settings);
     assert!(matches!(near, Err(CycleError::NoDynamics)), "{near:?}");
     let constant = Cycle::near(&problem, &[1.0], 6.6, |_, u| u.fill(0.3), &settings);
