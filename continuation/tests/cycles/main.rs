@@ -1,4 +1,5 @@
 //! Periodic orbits against exact ones, against an independent integrator, and against textbooks.
+#![allow(clippy::unwrap_used)]
 
 mod embedded;
 mod exact;
