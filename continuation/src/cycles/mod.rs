@@ -43,7 +43,7 @@
 //!     ControlFlow::Continue(())
 //! })?;
 //! let last = branch.cycles.last().unwrap();
-//! assert!((last.cycle.period - 7.156_915_1).abs() < 1e-6);
+//! assert!((last.cycle.period - 7.156_919_9).abs() < 1e-6);
 //! assert_eq!((last.unstable, last.certified), (Some(0), true));
 //! let highest = branch.branch.column("max_u[0]").unwrap();
 //! assert!(highest.windows(2).all(|pair| pair[0] < pair[1]));
@@ -80,7 +80,8 @@
 //! Mass matrices of full rank; `n m` at most [`MAX_BLOCK`]: blocks are dense whatever the storage of the
 //! problem's Jacobian. Extrema are those of the polynomials, with the error `O(h^{m+1})`. Gauss collocation
 //! damps no fast mode on steps that are long for it: multipliers of very stiff directions come out too large,
-//! which their errors show. Near the unit multiplier of a fold, and at a branch point, two multipliers are
+//! which their errors show. Where layers are sharp, as in relaxation oscillations, steps
+//! along the branch become short: van der Pol's cycles take 5000 points from `μ = 1` to 98. Near the unit multiplier of a fold, and at a branch point, two multipliers are
 //! close to 1 and neither is known better than the square root of rounding; counts are uncertain there. Whether
 //! a period doubling or a torus is super- or subcritical is not said; curves of special points in two
 //! parameters are not followed. An approach to a homoclinic orbit is told by the period alone.

@@ -16,6 +16,8 @@ use std::ops::ControlFlow;
 
 /// Cosine between the orbit's derivative and the reference's below which the reference is renewed.
 const ALIGNED: f64 = 0.8;
+/// The same below which the orbit is that of the other side of an equilibrium.
+const OPPOSITE: f64 = -0.5;
 /// Largest correction, in the scaled metric, on going over to another mesh.
 const OVER: f64 = 1e-2;
 /// Amplitude, relative to the largest of the branch, at which shrinking cycles are taken to vanish, and
@@ -344,7 +346,11 @@ impl<'a, P: Problem> Run<'a, '_, P> {
             return Some(Stop { reason: StopReason::CyclesVanish, detail });
         }
         // beyond the equilibrium the orbit is half a period behind
-        let beyond = equations.alignment(&point.u) < 0.0;
+        let shrinks = match &self.cycles[..] {
+            [.., a, b] => b.cycle.amplitude() < a.cycle.amplitude(),
+            _ => false,
+        };
+        let beyond = shrinks && equations.alignment(&point.u) < OPPOSITE;
         if beyond || amplitude < VANISHED[0] * self.largest && amplitude < before {
             return Some(self.vanishing());
         }
@@ -391,8 +397,10 @@ impl<'a, P: Problem> Run<'a, '_, P> {
         }
         let name = self.problem.parameters()[self.which.0].name;
         let detail = format!(
-            "the period is {u:.6} and grows without bound as {name} tends to {q:.9}: the cycles approach a \
-             homoclinic or heteroclinic orbit, to which they are not followed"
+            "the period is {u:.6} and grows without bound while {name} comes to rest near {q:.8}, where it has \
+             changed by {:.1e} since the period was {t:.6}: the cycles approach a homoclinic or heteroclinic \
+             orbit, to which they are not followed",
+            (q - p).abs()
         );
         Some(Stop { reason: StopReason::PeriodUnbounded, detail })
     }
