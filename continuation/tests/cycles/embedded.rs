@@ -37,6 +37,8 @@ pub(crate) struct Embedded {
     pub(crate) m: f64,
     pub(crate) s: f64,
     pub(crate) fold: bool,
+    /// How much of `p` is added to `m`.
+    pub(crate) lift: f64,
     pub(crate) beside: Vec<Beside>,
     pub(crate) a: Vec<f64>,
     pub(crate) quadratic: Vec<f64>,
@@ -69,6 +71,7 @@ impl Embedded {
             m: 1.0,
             s: 1.0,
             fold: false,
+            lift: 0.0,
             beside,
             a,
             quadratic,
@@ -121,7 +124,7 @@ impl Embedded {
         let (growth, slope, by_p) = if self.fold {
             (p + square - square * square, 1.0 - 2.0 * square, 1.0)
         } else {
-            (self.m - self.s * square, -self.s, 0.0)
+            (self.m + self.lift * p - self.s * square, -self.s, self.lift)
         };
         let (nu, omega) = (self.nu, self.omega);
         g[0] = nu * (growth * y[0] - omega * y[1]);

@@ -1,7 +1,7 @@
 //! Cycles whose period, multipliers and special points are known exactly.
 
 use super::embedded::{Beside, Embedded, Random};
-use super::systems::hopf_form;
+use super::systems::{hopf_form, slowing};
 use super::{assert_within, follow, follow_by};
 use continuation::cycles::{Cycle, CycleProblem, CycleSettings, Multiplier, SmallCycle};
 use continuation::{
@@ -77,6 +77,7 @@ fn random_systems_with_known_multipliers() {
         let beside = lambdas[..round % 3].iter().map(|l| Beside::Linear(*l)).collect();
         let mut problem = Embedded::new(beside, &mut random, 0.2);
         (problem.m, problem.s) = (0.6 + 0.3 * random.next(), 1.0);
+        problem.lift = 1.0;
         if round % 2 == 1 {
             let n = 2 + round % 3;
             let mass = |i: usize, x: f64| f64::from(u8::from(i % n == i / n)) + 0.3 * x;
@@ -327,12 +328,7 @@ fn a_closed_branch_of_cycles_ends_where_it_began() {
 /// `θ′ = 1 − p cos θ` on a circle: the period `2π/√(1 − p²)` grows without bound at `p = 1`.
 #[test]
 fn the_end_at_a_saddle_node_on_a_circle_is_told() {
-    let problem = DenseProblem::from_residual(2, &["p"], |u, p, r| {
-        let square = u[0] * u[0] + u[1] * u[1];
-        let turn = 1.0 - p[0] * u[0];
-        (r[0], r[1]) = ((1.0 - square) * u[0] - turn * u[1], turn * u[0] + (1.0 - square) * u[1]);
-    })
-    .with_stability(Stability::Dynamics);
+    let problem = slowing();
     let guess = |t: f64, u: &mut [f64]| (u[0], u[1]) = (t.cos(), t.sin());
     let start = Cycle::near(&problem, &[0.0], TAU, guess, &CycleSettings::default()).unwrap();
     let branch = follow(

@@ -180,6 +180,28 @@ pub(crate) fn roessler() -> System {
     }
 }
 
+/// `θ′ = 1 − p cos θ` on the unit circle.
+pub(crate) fn slowing() -> System {
+    System {
+        n: 2,
+        parameters: vec![parameter("p", 1.0)],
+        field: |u, p, r| {
+            let (rest, turn) = (1.0 - u[0] * u[0] - u[1] * u[1], 1.0 - p[0] * u[0]);
+            r[0] = rest * u[0] - turn * u[1];
+            r[1] = turn * u[0] + rest * u[1];
+        },
+        slopes: |u, p, set| {
+            let (rest, turn) = (1.0 - u[0] * u[0] - u[1] * u[1], 1.0 - p[0] * u[0]);
+            set(0, 0, rest - 2.0 * u[0] * u[0] + p[0] * u[1]);
+            set(0, 1, -2.0 * u[0] * u[1] - turn);
+            set(1, 0, turn - p[0] * u[0] - 2.0 * u[0] * u[1]);
+            set(1, 1, rest - 2.0 * u[1] * u[1]);
+            set(0, 2, u[0] * u[1]);
+            set(1, 2, -u[0] * u[0]);
+        },
+    }
+}
+
 /// One extrapolated step of the modified midpoint rule, of order 16 (Gragg, Bulirsch and Stoer).
 fn step(f: &dyn Fn(&[f64], &mut [f64]), x: &mut [f64], h: f64) {
     let n = x.len();
