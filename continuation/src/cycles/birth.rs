@@ -201,9 +201,7 @@ fn leave<P: Problem>(
                 if !far || best.is_none() {
                     best = Some(cycle);
                 }
-                if !far && (shrinking || first > CORRECTION[0])
-                    || far && !shrinking && best.is_some() && first < 0.5
-                {
+                if !far && (shrinking || first > CORRECTION[0]) {
                     break;
                 }
                 shrinking |= far;
