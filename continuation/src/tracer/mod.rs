@@ -25,6 +25,7 @@ mod input;
 mod narrow;
 mod out_of_points;
 mod plateau;
+mod predict;
 mod restart;
 mod resume;
 mod snapshot;
@@ -492,22 +493,6 @@ impl<'a, P: Problem> Tracer<'a, P> {
         let length = self.current.length;
         self.size.accept(h, &quality, &self.settings, length);
         Ok(())
-    }
-
-    /// Quadratic extrapolation of the branch; along the tangent at first.
-    fn predict(&mut self, h: f64) {
-        self.trial.p = self.predicted(h);
-        let Self { current, previous, trial, .. } = self;
-        let bend = if self.previous_h > 0.0 { 0.5 * h * h / self.previous_h } else { 0.0 };
-        for i in 0..trial.u.len() {
-            trial.u[i] = current.u[i] + (h + bend) * current.tu[i] - bend * previous.tu[i];
-        }
-    }
-
-    /// The parameter of that.
-    fn predicted(&self, h: f64) -> f64 {
-        let bend = if self.previous_h > 0.0 { 0.5 * h * h / self.previous_h } else { 0.0 };
-        self.current.p + (h + bend) * self.current.tp - bend * self.previous.tp
     }
 
     fn metric_distance(&mut self) -> f64 {

@@ -201,18 +201,22 @@ impl<P: Problem> Tracer<'_, P> {
             eigenvectors: Vec::new(),
             state: one.state,
         };
-        let mut seeds = SEEDS.to_vec();
+        let near;
+        let mut seeds = &SEEDS[..];
         if kernel > 1 && !final_say {
             match divide(core, a, b, h, work) {
                 Divided::Between(at) => {
                     self.cut = Some(at);
                     return Err(Refusal::SeveralEvents);
                 }
-                Divided::Together(at) => seeds = vec![at / h],
+                Divided::Together(at) => {
+                    near = [at / h];
+                    seeds = &near;
+                }
                 Divided::Unknown => {}
             }
         }
-        match locate_branch_points(core, a, b, h, kernel, &seeds, final_say) {
+        match locate_branch_points(core, a, b, h, kernel, seeds, final_say) {
             Ok(found) => located.extend(found.into_iter().map(special)),
             // Newton's method left the domain, as it does where thin films forbid a long way: the point
             // is bracketed first, on the branch
