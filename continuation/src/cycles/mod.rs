@@ -62,6 +62,7 @@
 //! each changes when all intervals are halved and the cycle is solved again, one and a half times. A count of
 //! unstable multipliers is [certified](CyclePoint::certified) where the trivial one is identified and no other is
 //! within twice its error of the unit circle. These errors are estimates, not bounds that were proven.
+//! Where the trivial multiplier is off by more than 0.05 the mesh does not resolve the orbit, and no error is given.
 //!
 //! # Special points
 //! Limit points ([`Fold`](crate::EventKind::Fold)) and branch points of cycles are those of the

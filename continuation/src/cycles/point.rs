@@ -11,7 +11,7 @@ use crate::step::{Constraint, Core, Precision, Refusal, State, Weights, dot};
 use serde::{Deserialize, Serialize};
 
 /// Deviation of the trivial multiplier from 1 above which it is not told from the others: nothing is
-/// known of stability then.
+/// known of stability then, nor of errors.
 const UNKNOWN: f64 = 0.05;
 /// The parameter's part of a tangent, in its scale, below which the finer solution is sought on the plane
 /// across the branch and not at the same parameter.
@@ -36,7 +36,8 @@ pub struct CyclePoint {
     /// have at least as much; `None` without multipliers.
     pub trivial_error: Option<f64>,
     /// Estimated relative error of period and states at the mesh points, from the solution with every
-    /// interval halved; `None` where it was not sought or not found.
+    /// interval halved; `None` where it was not sought or not found, and where the trivial multiplier is
+    /// not identified: the mesh is too coarse for its errors to be estimated.
     pub error: Option<f64>,
     /// The same, of the period alone.
     pub period_error: Option<f64>,
@@ -166,7 +167,9 @@ impl CyclePoint {
         let trivial = trivial(&multipliers);
         let trivial_error = trivial.map(|t| multipliers[t].distance(&Multiplier::ONE));
         let (mut error, mut period_error, mut parameter_error) = (None, None, None);
-        if let Some(finer) = finer {
+        // halving says nothing of an orbit that neither mesh resolves
+        let resolved = trivial_error.is_some_and(|off| off <= UNKNOWN);
+        if let Some(finer) = finer.filter(|_| resolved) {
             let period = SAFETY * (finer.period / cycle.period - 1.0).abs();
             let (n, m) = (equations.n, equations.basis.degree);
             let states = (0..equations.intervals() * n).map(|i| {

@@ -229,12 +229,17 @@ impl<'a, P: Problem> Run<'a, '_, P> {
         let last = self.cycles.last()?;
         let settings = self.cycle_settings;
         let mut intervals = equations.intervals() as f64;
-        if let Some(error) = last.error {
-            let power = 0.5 / last.cycle.degree as f64;
-            let ratio = (error / settings.accuracy).powf(power);
-            // towards what the accuracy asks for, slowly downwards
-            intervals *= if ratio > 1.0 { (1.2 * ratio).min(2.0) } else { ratio.max(0.85) };
-        }
+        intervals *= match last.error {
+            Some(error) => {
+                let power = 0.5 / last.cycle.degree as f64;
+                let ratio = (error / settings.accuracy).powf(power);
+                // towards what the accuracy asks for, slowly downwards
+                if ratio > 1.0 { (1.2 * ratio).min(2.0) } else { ratio.max(0.85) }
+            }
+            // an orbit that the mesh does not resolve
+            None if settings.check => 2.0,
+            None => 1.0,
+        };
         let count = (intervals.ceil() as usize).clamp(settings.intervals, settings.max_intervals);
         let mesh = equations.orbit(&baton.at.u).equidistributed(count);
         let cycle = last.cycle.on(mesh);
@@ -271,6 +276,7 @@ impl<'a, P: Problem> Run<'a, '_, P> {
         let check = || finer(equations, self.which, &point.u, &p, self.range, across);
         let fine = if self.cycle_settings.check { check() } else { None };
         let cycle = CyclePoint::of(equations, &point.u, &p, fine.as_ref(), self.which);
+        let fine = fine.filter(|_| cycle.error.is_some());
         (point.unstable, point.certified) = (cycle.unstable, cycle.certified);
         point.s += self.base_s;
         let observed = observe(self.problem, &cycle.cycle);

@@ -1,14 +1,17 @@
 //! Cycles whose period, multipliers and special points are known exactly.
 
 use super::embedded::{Beside, Embedded, Random};
-use super::systems::{hopf_form, slowing};
+use super::systems::{hopf_form, slowing, van_der_pol};
 use super::{assert_within, follow, follow_by};
-use continuation::cycles::{Cycle, CycleProblem, CycleSettings, Multiplier, SmallCycle};
+use continuation::cycles::{
+    Cycle, CyclePoint, CycleProblem, CycleSettings, Multiplier, SmallCycle, trace,
+};
 use continuation::{
-    BandProblem, DenseProblem, EventKind, Settings, Stability, StopReason, Tracer,
+    BandProblem, DenseProblem, EventKind, Progress, Settings, Stability, StopReason, Tracer,
     check_derivatives,
 };
 use std::f64::consts::{PI, TAU};
+use std::ops::ControlFlow;
 
 /// A start on the circle of radius 1.
 fn circle(problem: &Embedded, p: f64, settings: &CycleSettings) -> Cycle {
@@ -119,6 +122,109 @@ fn random_systems_with_known_multipliers() {
         let unstable = expected.iter().filter(|log| **log > 0.0).count();
         assert_eq!((cycle.unstable, cycle.certified), (Some(unstable), true));
     }
+}
+
+/// Meshes far too coarse for what they are asked: what is said to be certain is, and errors say how
+/// little is known.
+#[test]
+fn coarse_meshes_claim_no_more_than_they_know() {
+    let mut random = Random(23);
+    let (mut points, mut certified) = (0, 0);
+    for round in 0..240 {
+        let lambdas = [0.6 * random.next(), 0.2 * random.next()];
+        let beside = lambdas[..round % 3].iter().map(|l| Beside::Linear(*l)).collect();
+        let mut problem = Embedded::new(beside, &mut random, 0.1 + 0.1 * (round % 4) as f64);
+        problem.lift = 1.0;
+        let intervals = 3 + round % 10;
+        let settings = CycleSettings {
+            degree: 2 + round % 5,
+            intervals,
+            max_intervals: intervals,
+            ..CycleSettings::default()
+        };
+        let guess = |t: f64, u: &mut [f64]| problem.circle(1.0, t, u);
+        let period = problem.period();
+        let Ok(start) = Cycle::near(&problem, &[0.0], period, guess, &settings) else { continue };
+        let observer = &mut |_: &Progress| ControlFlow::Continue(());
+        let to = Settings { target: Some(0.3), max_points: 12, ..Settings::default() };
+        let Ok(branch) = trace(&problem, "p", &start, &to, &settings, &[], observer) else {
+            continue;
+        };
+        for point in &branch.cycles {
+            points += 1;
+            let m = problem.m + point.cycle.parameters[0];
+            let mut expected = vec![0.0, -2.0 * m * problem.nu * period];
+            expected.extend(lambdas[..round % 3].iter().map(|l| l * period));
+            let unstable = expected.iter().filter(|log| **log > 0.0).count();
+            if point.certified {
+                certified += 1;
+                assert_eq!(point.unstable, Some(unstable), "{round}: {:?}", point.multipliers);
+            }
+            expected.sort_by(|a, b| b.total_cmp(a));
+            for (found, log) in point.multipliers.iter().zip(&expected) {
+                let Some(error) = found.error else { continue };
+                let off = (found.log_modulus - log).abs();
+                assert!(off <= error, "{round}: {off:e}, said {error:e}");
+            }
+            if let Some(error) = point.period_error {
+                let off = (point.cycle.period / period - 1.0).abs();
+                assert!(off <= error + 1e-13, "{round}: period off {off:e}, said {error:e}");
+            }
+        }
+    }
+    assert!(points > 2500 && certified > 2000, "{certified} of {points}");
+}
+
+/// The same of an orbit that is fast and slow in turn, against itself on a fine mesh.
+#[test]
+fn coarse_meshes_of_relaxation_oscillations() {
+    let problem = van_der_pol();
+    let point = |mu: f64, settings: &CycleSettings| {
+        let guess = |t: f64, u: &mut [f64]| (u[0], u[1]) = (2.0 * t.cos(), -2.0 * t.sin());
+        let start = Cycle::near(&problem, &[mu], 6.3 + 0.4 * mu * mu, guess, settings).ok()?;
+        let observer = &mut |_: &Progress| ControlFlow::Continue(());
+        let short = Settings { max_points: 2, ..Settings::default() };
+        let branch = trace(&problem, "mu", &start, &short, settings, &[], observer).ok()?;
+        branch.cycles.into_iter().next()
+    };
+    let (mut points, mut certified) = (0, 0);
+    for mu in [0.3, 0.7, 1.0, 1.5, 2.0, 3.0, 4.0] {
+        let fine = CycleSettings { intervals: 150, degree: 5, ..CycleSettings::default() };
+        let exact = point(mu, &fine).unwrap();
+        let own = |p: &CyclePoint| p.multipliers[1 - p.trivial.unwrap()];
+        for (intervals, degree) in (3..=24).flat_map(|n| (2..=5).map(move |m| (n, m))) {
+            let coarse = CycleSettings {
+                intervals,
+                degree,
+                max_intervals: intervals,
+                ..CycleSettings::default()
+            };
+            let Some(found) = point(mu, &coarse) else { continue };
+            // a multiple of the period is another cycle
+            if (found.cycle.period / exact.cycle.period - 1.0).abs() > 0.5 {
+                continue;
+            }
+            points += 1;
+            let case = format!("mu {mu}, {intervals} intervals of degree {degree}");
+            if found.certified {
+                certified += 1;
+                assert_eq!(found.unstable, Some(0), "{case}: {:?}", found.multipliers);
+            }
+            if let Some(error) = own(&found).error.filter(|_| found.certified) {
+                let off = (own(&found).log_modulus - own(&exact).log_modulus).abs();
+                assert!(
+                    off <= error + own(&exact).error.unwrap(),
+                    "{case}: {off:e}, said {error:e}"
+                );
+            }
+            if let Some(error) = found.period_error {
+                let off = (found.cycle.period / exact.cycle.period - 1.0).abs();
+                let reference = exact.period_error.unwrap() + 1e-12;
+                assert!(off <= error + reference, "{case}: period off {off:e}, said {error:e}");
+            }
+        }
+    }
+    assert!(points > 400 && certified > 300, "{certified} of {points}");
 }
 
 #[test]
