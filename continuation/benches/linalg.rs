@@ -1,4 +1,4 @@
-//! Band and bordered solves at the sizes of a shell: `cargo bench -p continuation --bench linalg`.
+//! Band and bordered solves at the sizes of a shell: `cargo bench -p arclen-continuation --bench linalg`.
 //!
 //! Half-bandwidth 7, microseconds on one core of a shared machine, without / with rank-one term:
 //!

@@ -1,5 +1,5 @@
 //! A thousand random problems whose crossings are known, in every storage: every crossing is found, none
-//! invented, counts are right or said to be uncertain. `cargo bench -p continuation --bench random_crossings`.
+//! invented, counts are right or said to be uncertain. `cargo bench -p arclen-continuation --bench random_crossings`.
 //!
 //! Not timed: it ends with an error at the first that fails. The tests run sixty of them.
 #![allow(dead_code, clippy::unwrap_used, clippy::print_stdout, reason = "shared with the tests")]

@@ -1,6 +1,6 @@
 //! A large sparse problem: Bratu's equation in a square, to its fold and beyond.
 //!
-//! `cargo run --release -p continuation --example bratu_square -- 200`: 40,000 unknowns by five-point
+//! `cargo run --release -p arclen-continuation --example bratu_square -- 200`: 40,000 unknowns by five-point
 //! differences, `Δu + λ eᵘ = 0` with `u = 0` on the edge, fold at 6.808124423 in the limit. Prints the
 //! fold, extrapolated from the mesh and one of half as many intervals, and how many matrices were
 //! assembled and factored.

@@ -1,5 +1,5 @@
 //! How often 95 % intervals hold the truth: a hundred curves of each of two shells.
-//! `cargo bench -p identify --bench coverage`.
+//! `cargo bench -p arclen-identify --bench coverage`.
 //!
 //! Not timed: it prints what is inside, and each interval that misses, and ends with an error if one quantity is
 //! held too seldom or too often, or if a grid of starts ends in another minimum than a start at the truth.

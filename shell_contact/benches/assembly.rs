@@ -1,4 +1,4 @@
-//! Residual and Jacobian of the contact problem: `cargo bench -p shell_contact`.
+//! Residual and Jacobian of the contact problem: `cargo bench -p arclen-shell`.
 
 use continuation::Problem;
 use criterion::{Criterion, criterion_group, criterion_main};
