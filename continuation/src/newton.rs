@@ -152,6 +152,10 @@ pub fn newton<P: Problem>(
                         break;
                     }
                 }
+                Err(EvalError::Aborted) => {
+                    let cause = Some(EvalError::Aborted);
+                    return Err(NewtonError::Stuck { iterations, correction, cause });
+                }
                 Err(error) => cause = Some(error),
             }
             damping /= 2.0;

@@ -53,6 +53,11 @@ pub enum EvalError {
         /// The bound.
         bound: f64,
     },
+    /// The problem ends the computation: a callback failed, say, or its user lost patience. No shorter
+    /// step is tried; a trace ends with [`crate::StopReason::Interrupted`] and keeps what it has. A
+    /// problem that returns this once returns it at every later evaluation.
+    #[error("the problem ended the computation")]
+    Aborted,
     /// The assembly of a matrix wrote an entry outside its pattern.
     #[error(transparent)]
     OutsidePattern(#[from] OutsidePattern),

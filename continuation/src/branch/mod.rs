@@ -69,7 +69,7 @@ pub enum StopReason {
     ReturnedToStart,
     /// The branch goes on as one that is known already ([`crate::diagram`]).
     Retraced,
-    /// The observer asked to stop.
+    /// The observer asked to stop, or the problem did ([`crate::EvalError::Aborted`]).
     Interrupted,
 }
 

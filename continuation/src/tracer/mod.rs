@@ -42,7 +42,7 @@ pub(crate) use snapshot::Snapshot;
 use crate::branch::{Branch, Doubt, Event, Point, Statistics, Stop, StopReason};
 use crate::events::{Beside, Detector, Hidden, Plateau, Stretch, Watch};
 use crate::newton::{NewtonSettings, newton};
-use crate::problem::{ParamId, Problem, Stability};
+use crate::problem::{EvalError, ParamId, Problem, Stability};
 use crate::settings::{Settings, SettingsError};
 use crate::sound::{check_sizes, examine};
 use crate::step::{
@@ -325,6 +325,11 @@ impl<'a, P: Problem> Tracer<'a, P> {
         }
     }
 
+    /// Ends the trace as the problem wants it.
+    fn abort(&mut self) {
+        self.end(StopReason::Interrupted, EvalError::Aborted.to_string());
+    }
+
     pub(crate) fn into_branch(self, points: Vec<Point>) -> Branch {
         let problem = self.core.problem;
         let stopped =
@@ -388,6 +393,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
                         return;
                     }
                 }
+                Err(Refusal::Evaluation(EvalError::Aborted)) => return self.abort(),
                 Err(refusal) => {
                     self.core.statistics.rejected += 1;
                     if matches!(refusal, Refusal::Orientation | Refusal::BranchesClose { .. }) {

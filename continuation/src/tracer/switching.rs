@@ -8,7 +8,7 @@
 use super::Tracer;
 use super::input::{TraceError, check, range};
 use crate::branch::{Branch, Direction, Event, StopReason};
-use crate::problem::{ParamId, Problem};
+use crate::problem::{EvalError, ParamId, Problem};
 use crate::settings::Settings;
 use crate::singular::Extended;
 use crate::step::{Constraint, Core, Precision, Refusal, State, Weights, dot, judge};
@@ -155,6 +155,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
                     self.core.statistics.accepted += 1;
                     return;
                 }
+                Err(Refusal::Evaluation(EvalError::Aborted)) => return self.abort(),
                 Err(refusal) => {
                     self.core.statistics.rejected += 1;
                     h *= if departure.state.is_some() { 0.9 } else { 0.5 };
