@@ -1,10 +1,10 @@
 //! The command line.
 
-use crate::case::Override;
-use crate::sweep::Shard;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use std::path::PathBuf;
+use study::case::Override;
+use study::sweep::Shard;
 
 /// Bifurcation diagrams: branches of solutions followed around their folds.
 #[derive(Debug, Parser)]
@@ -54,6 +54,16 @@ pub(crate) enum Command {
     },
 }
 
+/// The overrides of `--set`.
+pub(crate) fn set(texts: &[String]) -> impl Iterator<Item = Override> {
+    texts.iter().map(|text| Override::given_by("--set", text))
+}
+
+/// The override of an option that is short for another.
+pub(crate) fn short(flag: &'static str, key: &str, value: Option<&str>) -> Option<Override> {
+    value.map(|value| Override::given_by(flag, format!("{key}={value}")))
+}
+
 /// Which case.
 #[derive(Debug, Args)]
 pub(crate) struct CaseArguments {
@@ -80,10 +90,13 @@ impl CaseArguments {
 
     /// The overrides, in the order in which they are applied.
     pub(crate) fn overrides(&self) -> Vec<Override> {
-        let set = self.set.iter().map(|text| Override::set(text));
-        set.chain(self.elements.iter().map(|count| Override::elements(count)))
-            .chain(self.eigenvalues.iter().map(|count| Override::eigenvalues(count)))
-            .collect()
+        let own = [
+            ("--elements", "mesh.elements", &self.elements),
+            ("--eigenvalues", "path.eigenvalues", &self.eigenvalues),
+        ];
+        let own =
+            own.into_iter().filter_map(|(flag, key, value)| short(flag, key, value.as_deref()));
+        set(&self.set).chain(own).collect()
     }
 }
 
@@ -140,7 +153,7 @@ pub(crate) struct DiagramArguments {
 impl DiagramArguments {
     /// The case, with the depth among its overrides.
     pub(crate) fn overrides(&self) -> Vec<Override> {
-        let depth = self.depth.iter().map(|depth| Override::depth(depth));
+        let depth = short("--depth", "diagram.depth", self.depth.as_deref());
         self.case.overrides().into_iter().chain(depth).collect()
     }
 }
@@ -236,6 +249,14 @@ pub(crate) struct FigureArguments {
     /// What to do with the results.
     #[command(flatten)]
     pub(crate) output: OutputArguments,
+}
+
+impl FigureArguments {
+    /// The overrides of all cases, in the order in which they are applied.
+    pub(crate) fn overrides(&self) -> Vec<Override> {
+        let elements = short("--elements", "mesh.elements", self.elements.as_deref());
+        set(&self.set).chain(elements).collect()
+    }
 }
 
 /// Which sweep, and how to share the work.

@@ -4,19 +4,12 @@
 //! into a checked case, `run` traces it, `output` and `pictures` turn the result into files.
 
 mod arguments;
-mod case;
-mod closest;
 mod commands;
 mod exit;
 mod figures;
 mod fit;
-mod output;
-mod phase;
 mod pictures;
-mod run;
-mod sweep;
 mod terminal;
-mod units;
 
 use arguments::Arguments;
 use clap::Parser;

@@ -2,7 +2,7 @@
 //!
 //! [`Report`] holds plain numbers; [`Report::html`] embeds them, rounded, in a page with its script,
 //! its style and the library that draws the charts. Moving along a curve, by pointer or keyboard,
-//! shows the state at that point. Meridians are thinned by [`Outline`] before they are put in.
+//! shows the state at that point.
 
 mod outline;
 mod page;

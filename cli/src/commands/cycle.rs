@@ -4,12 +4,13 @@ use super::delivery::Made;
 use super::progress::Observer;
 use super::report::{REPORT, cycle_report};
 use crate::arguments::CycleArguments;
-use crate::case::ResolvedCase;
 use crate::exit::Exit;
-use crate::output::{CycleResult, Folder, branch_csv, cycle_json, cycle_summary, cycle_table};
 use crate::pictures;
-use crate::run::run_cycle;
 use crate::terminal;
+use study::case::ResolvedCase;
+use study::record::{CycleResult, branch_csv, cycle_json, cycle_summary, cycle_table};
+use study::run::run_cycle;
+use study::store::Folder;
 
 const CYCLE: &str = "cycle.json";
 const PATH: &str = "cycle.csv";

@@ -2,10 +2,10 @@
 
 use crate::arguments::OutputArguments;
 use crate::exit::Exit;
-use crate::output::{Earlier, Files, Folder, with_files};
 use crate::terminal;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
+use study::store::{Earlier, Files, Folder, with_files};
 
 impl OutputArguments {
     /// The output folder; `None` when no files are wanted.

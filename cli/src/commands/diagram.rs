@@ -4,14 +4,15 @@ use super::delivery::Made;
 use super::progress::Observer;
 use super::report::{REPORT, report};
 use crate::arguments::DiagramArguments;
-use crate::case::ResolvedCase;
 use crate::exit::Exit;
-use crate::output::TraceResult;
-use crate::output::{Checkpoint, DiagramResult, Folder, branch_csv, diagram_json, diagram_summary};
-use crate::run::{Keep, Saved, run_diagram};
 use crate::{pictures, terminal};
 use continuation::diagram::{DiagramBranch, Unfinished};
 use std::path::Path;
+use study::case::ResolvedCase;
+use study::record::TraceResult;
+use study::record::{DiagramResult, branch_csv, diagram_json, diagram_summary};
+use study::run::{Keep, KeepNothing, Saved, run_diagram};
+use study::store::{Checkpoint, Folder};
 
 const DIAGRAM: &str = "diagram.json";
 const CASE: &str = "case.toml";
@@ -62,11 +63,11 @@ pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
         terminal::err(&note);
     }
     let observer = Observer::new(None, arguments.output.quiet);
-    let mut nowhere = Nowhere;
+    let mut nothing = KeepNothing;
     let mut lazy = checkpoint.as_mut().map(|checkpoint| Lazy { checkpoint, resumed, begun: false });
     let keep: &mut dyn Keep = match &mut lazy {
         Some(lazy) => lazy,
-        None => &mut nowhere,
+        None => &mut nothing,
     };
     let outcome =
         run_diagram(&case, arguments.report, saved, keep, &mut |at| observer.hear_of_diagram(at));
@@ -123,19 +124,6 @@ impl Keep for Lazy<'_> {
         self.begin();
         self.checkpoint.unfinished(after, branch, seconds);
     }
-}
-
-/// Keeps nothing, where no files are wanted.
-struct Nowhere;
-
-impl Keep for Nowhere {
-    fn branch(&mut self, _: &DiagramBranch, _: f64) {}
-
-    fn is_due(&self) -> bool {
-        false
-    }
-
-    fn unfinished(&mut self, _: usize, _: &Unfinished, _: f64) {}
 }
 
 /// Write files, JSON and summary.

@@ -13,7 +13,7 @@ const JSON: &str = "figures.json";
 /// Compute figures.
 pub(super) fn figure(arguments: &FigureArguments) -> Exit {
     let planned = figures::numbers(&arguments.numbers)
-        .and_then(|numbers| figures::plan(&numbers, arguments.elements.as_deref(), &arguments.set));
+        .and_then(|numbers| figures::plan(&numbers, &arguments.overrides()));
     let plan = match planned {
         Ok(plan) => plan,
         Err(error) => return refuse(&error),

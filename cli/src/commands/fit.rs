@@ -1,15 +1,10 @@
 //! `arclen fit`: from measured curves to the shell's properties.
 
 use super::delivery::Made;
-use crate::arguments::{FitArguments, SegmentsWanted};
-use crate::case::name::plain_name;
-use crate::case::{Override, load};
+use crate::arguments::{FitArguments, SegmentsWanted, set};
 use crate::exit::Exit;
-use crate::fit::files::{Drawn, FIT, FitsRow, NAMES, files, fit_json, fits_csv, summary};
-use crate::fit::lab::{self, Lab, Wishes};
-use crate::fit::plan::{PLAN, planned};
-use crate::fit::{Failure, Laws, Outcome, Source, fit_file, profiles, sources};
-use crate::{run, terminal};
+use crate::fit::{self as drawing, Drawn, draw_fit};
+use crate::terminal;
 use identify::data::Direction;
 use identify::{LawName, Profiles};
 use indicatif::ProgressBar;
@@ -17,6 +12,11 @@ use rayon::prelude::*;
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use study::case::{Override, catalogue, load, plain_name};
+use study::fit::files::{self as tables, FIT, FitsRow, TABLES, fit_json, fits_csv, summary};
+use study::fit::lab::{self, Lab, Wishes};
+use study::fit::plan::{PLAN, planned};
+use study::fit::{Failure, Laws, Outcome, Source, fit_file, profiles, sources};
 
 const FITS: &str = "fits.csv";
 const BATCH: &str = "fits.json";
@@ -40,7 +40,7 @@ pub(super) fn fit(arguments: &FitArguments) -> Exit {
 
 /// What a measurement of a case would identify.
 fn plan(arguments: &FitArguments, case: &PathBuf, lab: &Lab, wishes: Wishes<'_>) -> Exit {
-    let loaded = match load(case, &[], &run::catalogue()) {
+    let loaded = match load(case, &[], &catalogue()) {
         Ok(loaded) => loaded,
         Err(error) => return refuse(&error),
     };
@@ -80,7 +80,7 @@ fn wishes(arguments: &FitArguments) -> Wishes<'_> {
 }
 
 fn prepare(arguments: &FitArguments) -> Result<(Lab, Laws, Profiles), String> {
-    let overrides: Vec<Override> = arguments.set.iter().map(|text| Override::set(text)).collect();
+    let overrides: Vec<Override> = set(&arguments.set).collect();
     let lab =
         lab::load(arguments.known.as_deref(), &overrides).map_err(|error| lab::told(&error))?;
     let laws = match arguments.law.as_deref() {
@@ -99,6 +99,13 @@ fn prepare(arguments: &FitArguments) -> Result<(Lab, Laws, Profiles), String> {
 
 fn inputs(arguments: &FitArguments) -> Vec<PathBuf> {
     arguments.curves.iter().chain(&arguments.known).cloned().collect()
+}
+
+/// All files but the JSON.
+fn files(outcome: &Outcome, drawn: Drawn) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let tables = tables::files(outcome).map_err(|error| error.to_string())?;
+    let pictures = draw_fit(outcome, drawn).map_err(|error| error.to_string())?;
+    Ok([tables, pictures].concat())
 }
 
 /// `usual`, unless no pictures are wanted.
@@ -120,7 +127,8 @@ fn single(
     profiles: &Profiles,
 ) -> Exit {
     let inputs = inputs(arguments);
-    let folder = match arguments.output.folder(&stem(source), &NAMES, &inputs) {
+    let names: Vec<&str> = [FIT].into_iter().chain(TABLES).chain(drawing::NAMES).collect();
+    let folder = match arguments.output.folder(&stem(source), &names, &inputs) {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };

@@ -1,9 +1,8 @@
 //! `arclen list`: everything that has a name.
 
-use crate::case::{SHIPPED, SWEEPS};
 use crate::exit::Exit;
-use crate::run::catalogue;
 use std::fmt::Write as _;
+use study::case::{SHIPPED, SWEEPS, catalogue};
 
 /// Print the names.
 pub(super) fn list() -> Exit {

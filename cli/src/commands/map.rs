@@ -3,12 +3,13 @@
 use super::delivery::Made;
 use super::progress::Observer;
 use crate::arguments::MapArguments;
-use crate::case::ResolvedCase;
 use crate::exit::Exit;
-use crate::output::{Folder, MapResult, branch_csv, map_json, map_summary};
 use crate::pictures;
-use crate::run::run_map;
 use crate::terminal;
+use study::case::ResolvedCase;
+use study::record::{MapResult, branch_csv, map_json, map_summary};
+use study::run::run_map;
+use study::store::Folder;
 
 const MAP: &str = "map.json";
 const CASE: &str = "case.toml";

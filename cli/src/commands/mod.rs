@@ -15,10 +15,10 @@ mod sweep;
 mod trace;
 
 use crate::arguments::{Arguments, CaseArguments, Command};
-use crate::case::{LoadedCase, Override, load};
 use crate::exit::Exit;
-use crate::{run, terminal};
+use crate::terminal;
 use std::path::PathBuf;
+use study::case::{LoadedCase, Override, catalogue, load};
 
 /// Do what was asked.
 pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
@@ -43,7 +43,7 @@ fn loaded(
     overrides: &[Override],
     quiet: bool,
 ) -> Result<LoadedCase, Exit> {
-    let loaded = load(&arguments.case, overrides, &run::catalogue());
+    let loaded = load(&arguments.case, overrides, &catalogue());
     let loaded = loaded.map_err(|error| {
         terminal::error(&error);
         Exit::BadInput

@@ -1,13 +1,13 @@
 //! Progress of a trace on a terminal, and the wish to stop.
 
-use crate::case::PathCase;
-use crate::run::{DiagramProgress, Progress};
 use crate::terminal;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+use study::case::PathCase;
+use study::run::{DiagramProgress, Progress};
 
 const LENGTH: u64 = 1000;
 

@@ -1,8 +1,9 @@
 //! `report.html`: what a command found, as a page to look at.
 
-use crate::output::{ContactRow, CycleResult, EventRecord, Table, TraceResult};
-use crate::run::RING_AXES;
-use report::{Chart, Curve, Mark, Report, State};
+use report::{Chart, Curve, Mark, Outline, Report, State};
+use study::record;
+use study::record::{ContactRow, CycleResult, EventRecord, Table, TraceResult};
+use study::run::RING_AXES;
 
 /// Name of the file.
 pub(super) const REPORT: &str = "report.html";
@@ -26,7 +27,7 @@ struct Line<'a> {
     label: &'a str,
     table: &'a Table,
     events: &'a [EventRecord],
-    states: &'a [State],
+    states: &'a [record::State],
     jumps: &'a [usize],
 }
 
@@ -131,6 +132,11 @@ impl Kind {
     }
 }
 
+fn state(state: &record::State) -> State {
+    let record::Outline { sigma, z, pressure } = state.outline.clone();
+    State { point: state.point, plate: state.plate, outline: Outline { sigma, z, pressure } }
+}
+
 fn pair(name: &str, label: &str) -> (String, String) {
     (name.to_owned(), label.to_owned())
 }
@@ -218,7 +224,7 @@ fn curve(line: &Line<'_>) -> Curve {
         marks: marks.collect(),
         flags: known.then(|| (FLAG.to_owned(), flag)).into_iter().collect(),
         jumps: line.jumps.to_vec(),
-        states: line.states.to_vec(),
+        states: line.states.iter().map(state).collect(),
     }
 }
 
@@ -234,7 +240,17 @@ fn unstable(table: &Table) -> Vec<i32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::tests::example;
+    use std::ops::ControlFlow;
+    use study::case::{Override, load};
+    use study::run::run_trace;
+
+    /// A short branch.
+    fn example() -> TraceResult {
+        let keys = ["mesh.elements=40", "path.end=0.95", "stability.scan=axisymmetric"];
+        let overrides = keys.map(Override::new);
+        let case = load("fig12".as_ref(), &overrides, &[]).unwrap().case;
+        run_trace(&case, &mut |_| ControlFlow::Continue(())).unwrap()
+    }
 
     /// The data of a page.
     fn data(page: &str) -> serde_json::Value {
@@ -258,11 +274,11 @@ mod tests {
         }
         assert_eq!((&data["selected"], &data["bounds"]), (&0.into(), &"plates".into()));
         // what was left out is said
-        let stability = crate::output::StabilityRecord::default();
+        let stability = study::record::StabilityRecord::default();
         let result = TraceResult { stability: Some(stability), ..result };
         let other = report("fig12", "why", &[("branch".to_owned(), &result)]).unwrap();
         assert!(other.contains("why; stability against axisymmetric modes only"));
-        let kinds = result.table.rows().iter().filter(|row| row[15] != crate::output::Cell::Empty);
+        let kinds = result.table.rows().iter().filter(|row| row[15] != study::record::Cell::Empty);
         assert_eq!(curve["marks"].as_array().unwrap().len(), kinds.count());
     }
 }

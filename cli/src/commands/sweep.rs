@@ -4,17 +4,17 @@ use super::delivery::Made;
 use super::progress::stop_on_signals;
 use crate::arguments::{MergeArguments, OutputArguments, SweepArguments};
 use crate::exit::Exit;
-use crate::output::{
-    Folder, Kept, Status, Store, StoreError, SweepResult, of_one_sweep, phase_csv, sweep_json,
-    sweep_summary, write_curves, write_events,
-};
-use crate::run::{self, Outcome, run_sweep};
-use crate::sweep::{Plan, Shard, Sweep, SweepCase, load};
 use crate::{pictures, terminal};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
+use study::case::catalogue;
+use study::record::{CaseRecord, Status, SweepResult, sweep_json, sweep_summary};
+use study::run::{Outcome, run_sweep};
+use study::store::{Folder, Kept, Store, StoreError, of_one_sweep};
+use study::store::{phase_csv, write_curves, write_events};
+use study::sweep::{Plan, Shard, Sweep, SweepCase, load};
 
 const JSON: &str = "sweep.json";
 const CURVES: &str = "curves.csv";
@@ -26,7 +26,7 @@ const NAMES: [&str; 7] =
 /// Trace all cases of a sweep.
 pub(super) fn sweep(arguments: &SweepArguments) -> Exit {
     let quiet = arguments.output.quiet;
-    let sweep = match load(&arguments.sweep, arguments.shard, &run::catalogue()) {
+    let sweep = match load(&arguments.sweep, arguments.shard, &catalogue()) {
         Ok(sweep) => sweep,
         Err(error) => return refuse(&error),
     };
@@ -68,7 +68,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Exit {
         terminal::error(error);
     }
     let asked = sweep.cases.len();
-    let result = SweepResult::new(&sweep.plan, asked, &run.kept, run.interrupted);
+    let result = SweepResult::new(&sweep.plan, asked, records(&run.kept), run.interrupted);
     let output = &arguments.output;
     let exit = deliver(output, folder.as_ref(), &sweep.plan, &run.kept, &result, &sweep.inputs);
     if run.failure.is_some() { Exit::NotWritten } else { exit }
@@ -108,8 +108,12 @@ pub(super) fn merge(arguments: &MergeArguments) -> Exit {
     // a shard that was given twice counts once
     kept.sort_by_key(|case| case.record.case);
     kept.dedup_by_key(|case| case.record.case);
-    let result = SweepResult::new(&plan, plan.count().unwrap_or(0), &kept, false);
+    let result = SweepResult::new(&plan, plan.count().unwrap_or(0), records(&kept), false);
     deliver(&arguments.output, folder.as_ref(), &plan, &kept, &result, &[])
+}
+
+fn records(kept: &[Kept]) -> Vec<CaseRecord> {
+    kept.iter().map(|case| case.record.clone()).collect()
 }
 
 fn refuse(error: &dyn std::fmt::Display) -> Exit {

@@ -2,8 +2,6 @@
 
 use super::FigureError;
 use super::manifest::{Abscissa, CASES, Manifest, Ordinate, stem};
-use crate::case::{ContactCase, Override, ProblemCase, ResolvedCase, StabilityCase, load_text};
-use crate::run::{RunError, contact_branch};
 use continuation::{EventKind, NewtonSettings, newton};
 use shell_contact::modes::{ScanSettings, Scanned, scan_branch};
 use shell_contact::{ContactBranch, ContactProblem, Observation, Profile};
@@ -11,6 +9,8 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
+use study::case::{ContactCase, Override, ProblemCase, ResolvedCase, StabilityCase, load_text};
+use study::run::{RunError, contact_branch};
 
 /// A branch to be traced.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,18 +65,13 @@ pub(crate) struct State {
 ///
 /// # Errors
 /// When an override, the number of elements among them, is not allowed.
-pub(super) fn jobs(
-    manifest: &Manifest,
-    elements: Option<&str>,
-    set: &[String],
-) -> Result<Vec<Job>, FigureError> {
+pub(super) fn jobs(manifest: &Manifest, overrides: &[Override]) -> Result<Vec<Job>, FigureError> {
     manifest
         .curves
         .iter()
         .map(|curve| {
-            let of_figure = curve.set.iter().chain(set).map(|text| Override::set(text));
-            let overrides: Vec<Override> =
-                of_figure.chain(elements.map(Override::elements)).collect();
+            let of_figure = curve.set.iter().map(|text| Override::given_by("--set", text));
+            let overrides: Vec<Override> = of_figure.chain(overrides.iter().cloned()).collect();
             let known = CASES.iter().find(|(name, _)| *name == curve.case);
             let (_, text) = known.ok_or_else(|| FigureError::Manifest {
                 figure: manifest.number,

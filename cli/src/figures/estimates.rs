@@ -1,11 +1,11 @@
 //! The moduli that simulated curves give back (Fig. 9).
 
 use super::curve::Traced;
-use crate::case::ProblemCase;
 use serde::Serialize;
 use shell_contact::identify::{
     Combination, Estimate, ForceCurve, Formulas, IdentifyError, Known, Reading, estimate,
 };
+use study::case::ProblemCase;
 
 /// Estimated moduli, in SI units for a physical case.
 #[derive(Debug, Clone, PartialEq)]

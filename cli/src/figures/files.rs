@@ -6,9 +6,9 @@ use super::page::page;
 use super::ring::RingBranch;
 use super::windows;
 use super::{Computed, Figure};
-use crate::output::branch_csv;
 use crate::pictures::{Panel, Pen, PngError, png};
-use crate::run::contact_result;
+use study::record::branch_csv;
+use study::run::contact_result;
 
 /// Why a file could not be made.
 #[derive(Debug, thiserror::Error)]

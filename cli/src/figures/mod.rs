@@ -17,15 +17,15 @@ mod windows;
 
 pub(crate) use files::{files, json, summary};
 
-use crate::case::LoadError;
 use crate::pictures::Sheet;
-use crate::run::RunError;
 use claims::Claim;
 use curve::Traced;
 use estimates::EstimateRow;
 use manifest::{FIGURES, Manifest, OWN, SCHEMATIC, STABILITY};
 use ring::RingBranch;
 use std::sync::atomic::AtomicBool;
+use study::case::{LoadError, Override};
+use study::run::RunError;
 
 /// Why figures cannot be computed.
 #[derive(Debug, thiserror::Error)]
@@ -84,7 +84,7 @@ pub(crate) fn numbers(asked: &[String]) -> Result<Vec<u32>, FigureError> {
             numbers.push(STABILITY);
             continue;
         }
-        let unknown = || FigureError::Unknown { asked: crate::case::document::shown(word) };
+        let unknown = || FigureError::Unknown { asked: study::case::shown(word) };
         let number: u32 = word.parse().map_err(|_| unknown())?;
         if let Some((_, what)) = SCHEMATIC.iter().find(|(known, _)| *known == number) {
             return Err(FigureError::Schematic { number, what });
@@ -142,11 +142,7 @@ pub(crate) struct Plan {
 ///
 /// # Errors
 /// When an override is not allowed.
-pub(crate) fn plan(
-    numbers: &[u32],
-    elements: Option<&str>,
-    set: &[String],
-) -> Result<Plan, FigureError> {
+pub(crate) fn plan(numbers: &[u32], overrides: &[Override]) -> Result<Plan, FigureError> {
     let (mut manifests, mut jobs) = (Vec::new(), Vec::new());
     let known = FIGURES.iter().chain([&OWN]);
     for (figure, text) in known.filter(|(number, _)| numbers.contains(number)) {
@@ -154,7 +150,7 @@ pub(crate) fn plan(
             figure: *figure,
             detail: error.to_string(),
         })?;
-        jobs.extend(curve::jobs(&manifest, elements, set)?);
+        jobs.extend(curve::jobs(&manifest, overrides)?);
         manifests.push(manifest);
     }
     Ok(Plan { manifests, jobs })
@@ -245,8 +241,10 @@ mod tests {
     #[test]
     fn figures_at_few_elements_have_all_their_panels() {
         let stop = AtomicBool::new(false);
-        let computed =
-            plan(&[4, 12, 20], Some("60"), &[]).unwrap().compute(&stop, &mut |_| {}).unwrap();
+        let computed = plan(&[4, 12, 20], &[Override::new("mesh.elements=60")])
+            .unwrap()
+            .compute(&stop, &mut |_| {})
+            .unwrap();
         assert!(computed.early.is_empty(), "{:?}", computed.early);
         for figure in &computed.figures {
             assert_eq!(figure.sheet.panels.len(), figure.manifest.panels.len());
@@ -265,7 +263,7 @@ mod tests {
 
     #[test]
     fn a_stopped_computation_keeps_what_there_is() {
-        let computed = plan(&[7], Some("60"), &[])
+        let computed = plan(&[7], &[Override::new("mesh.elements=60")])
             .unwrap()
             .compute(&AtomicBool::new(true), &mut |_| {})
             .unwrap();

@@ -5,8 +5,9 @@ use super::laws::force;
 use super::manifest::{Abscissa, Law, Manifest, Ordinate, PanelSpec, Part, Show};
 use super::ring::{RingBranch, RingPoint};
 use super::windows;
-use crate::pictures::{Curve, Ink, Panel, PanelLine, Pen};
+use crate::pictures::{Ink, Panel, PanelLine, Pen};
 use std::f64::consts::TAU;
+use study::record::view::Curve;
 
 /// Samples along the meridian.
 const SAMPLES: usize = 1601;

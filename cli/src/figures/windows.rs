@@ -2,8 +2,9 @@
 
 use super::curve::Traced;
 use super::manifest::{Abscissa, PanelSpec};
-use crate::pictures::{Curve, Ink, Panel, PanelLine, Pen};
+use crate::pictures::{Ink, Panel, PanelLine, Pen};
 use shell_contact::modes::{Parity, Scanned};
+use study::record::view::Curve;
 
 /// How far from its number of waves a line is drawn, so that the two parities lie side by side.
 const ASIDE: f64 = 0.12;

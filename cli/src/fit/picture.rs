@@ -1,8 +1,10 @@
 //! A fit as pictures: data with the model on top, residuals, profiles.
 
-use super::{Outcome, smooth};
-use crate::pictures::{Curve, Ink, Panel, PanelLine, Pen, Sheet};
+use super::smooth;
+use crate::pictures::{Ink, Panel, PanelLine, Pen, Sheet};
 use identify::record::{Report, Row};
+use study::fit::Outcome;
+use study::record::view::Curve;
 
 /// Growth of the cost at the end of a 95 % interval.
 const LEVEL: f64 = 3.841_459;

@@ -1,6 +1,6 @@
 //! Ranges, ticks and their labels.
 
-use super::data::drawable;
+use study::record::view::drawable;
 
 /// One axis: its range in the units of its labels, its ticks, its title.
 #[derive(Debug, Clone, PartialEq)]

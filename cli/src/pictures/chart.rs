@@ -1,12 +1,12 @@
 //! One chart: axes, lines, markers, and a legend beside them that covers nothing.
 
 use super::axis::Axis;
-use super::data::{Mark, Stability, drawable};
 use super::palette::{FAINT, Form, GRID, form};
 use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use study::record::view::{Mark, Stability, drawable};
 
 /// Why a picture could not be drawn.
 #[derive(Debug, thiserror::Error)]

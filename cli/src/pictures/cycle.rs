@@ -2,30 +2,13 @@
 
 use super::axis::Axis;
 use super::chart::{Chart, DrawError, Entry, Line, Stroke};
-use super::data::{Curve, Shape, drawable};
 use super::draw::{DISTANCE, FORCE, WIDE, curve_lines, shapes, unstable_entries, values};
 use super::palette::{Color, FAINT, of_state};
-use crate::case::document::shown;
+use study::case::shown;
+use study::record::view::{Curve, CyclePictures, drawable};
 
 /// Name of the picture of the loop.
 pub(crate) const LOOP: &str = "loop.svg";
-
-/// What the pictures of a cycle show.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct CyclePictures {
-    /// Title.
-    pub(crate) title: String,
-    /// The complete branch, force over plate distance.
-    pub(crate) complete: Curve,
-    /// The way in, with gaps at jumps.
-    pub(crate) approach: Curve,
-    /// The way out, likewise.
-    pub(crate) retract: Curve,
-    /// Ends of the jumps.
-    pub(crate) jumps: Vec<(Place, Place)>,
-    /// For each jump a title and its shapes, before and after.
-    pub(crate) shapes: Vec<(String, Vec<Shape>)>,
-}
 
 /// Plate distance and force.
 type Place = (f64, f64);

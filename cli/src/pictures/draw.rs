@@ -2,9 +2,9 @@
 
 use super::axis::Axis;
 use super::chart::{Chart, DrawError, Entry, Line, Stroke};
-use super::data::{Curve, Examined, Mark, Profile, Shape, Stability, drawable};
 use super::palette::{Color, FAINT, of_quantity, of_state};
-use crate::case::document::shown;
+use study::case::shown;
+use study::record::view::{Curve, Examined, Mark, Profile, Shape, Stability, drawable};
 
 pub(super) const FORCE: &str = "force F/√(χ k_b)";
 pub(super) const DISTANCE: &str = "plate distance z₀/R₀";

@@ -1,9 +1,9 @@
 //! The picture of a map: curves of special points over the second parameter.
 
 use super::chart::DrawError;
-use super::data::{Curve, Mark};
 use super::draw::{self, DISTANCE};
-use crate::output::MapResult;
+use study::record::MapResult;
+use study::record::view::{Curve, Mark};
 
 /// Name of the picture.
 pub(crate) const MAP: &str = "map.svg";

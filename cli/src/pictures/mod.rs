@@ -7,7 +7,6 @@
 mod axis;
 mod chart;
 mod cycle;
-mod data;
 mod draw;
 mod map;
 mod palette;
@@ -15,20 +14,19 @@ mod phase;
 mod sheet;
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;
 
 pub(crate) use chart::DrawError;
-pub(crate) use cycle::{CyclePictures, LOOP, draw_cycle};
-pub(crate) use data::Mark;
-pub(crate) use data::{Curve, Examined, Profile, Shape, Stability};
+pub(crate) use cycle::{LOOP, draw_cycle};
 pub(crate) use map::{MAP, draw_map};
 pub(crate) use phase::{PHASE, draw_phase};
 pub(crate) use sheet::{
     BOLD, FAMILY, FONT, Ink, Panel, PanelLine, Pen, PngError, Sheet, escape, png,
 };
 
-use crate::output::{BranchRecord, DiagramResult, Pictures};
 use draw::Level;
+use study::record::view::Curve;
+use study::record::{BranchRecord, DiagramResult, Pictures};
 
 /// Names of all pictures that a trace may write.
 pub(crate) const NAMES: [&str; 6] = [

@@ -1,9 +1,9 @@
 //! Colours that people with any colour vision can tell apart (Okabe and Ito), and marker shapes.
 
-use crate::phase::Class;
 use plotters::style::BLACK;
 pub(super) use plotters::style::RGBColor as Color;
 use plotters::style::RGBColor;
+use study::record::phase::Class;
 
 const BLUE: RGBColor = RGBColor(0, 114, 178);
 const VERMILLION: RGBColor = RGBColor(213, 94, 0);

@@ -3,10 +3,10 @@
 use super::axis::Axis;
 use super::chart::{Chart, DrawError, Entry, Tile};
 use super::palette;
-use crate::case::document::shown;
-use crate::output::SweepResult;
-use crate::phase::Class;
-use crate::sweep;
+use study::case::shown;
+use study::record::SweepResult;
+use study::record::phase::Class;
+use study::sweep;
 
 /// Name of the picture.
 pub(crate) const PHASE: &str = "phase.svg";
@@ -134,9 +134,9 @@ impl Cells {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::{CaseRecord, Status};
-    use crate::phase::Phase;
-    use crate::sweep::{Plan, Setting, Shard};
+    use study::record::phase::Phase;
+    use study::record::{CaseRecord, Status};
+    use study::sweep::{Plan, Setting, Shard};
 
     fn axis(key: &str, values: &[f64], logarithmic: bool) -> sweep::Axis {
         let values = values.iter().map(|value| Setting::Real(*value)).collect();

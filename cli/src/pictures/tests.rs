@@ -1,10 +1,11 @@
 //! Pictures of made-up branches, sound and degenerate.
 
 use super::*;
-use crate::output::Pictures;
+use study::record::Pictures;
+use study::record::view::{Examined, Mark, Profile, Shape, Stability};
 
 /// A force curve with two folds in the distance, as strong adhesion makes them.
-pub(crate) fn two_folds() -> Pictures {
+fn two_folds() -> Pictures {
     let n = 400;
     let (mut x, mut y, mut unstable) = (vec![], vec![], vec![]);
     for i in 0..n {

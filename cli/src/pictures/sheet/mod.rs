@@ -10,10 +10,10 @@ mod text;
 pub(crate) use png::{PngError, png};
 pub(crate) use text::escape;
 
-use super::data::Curve;
 use super::palette::{Color, of_quantity, of_state};
 use panel::Layout;
 use std::fmt::Write;
+use study::record::view::Curve;
 
 /// The regular face of the shipped font.
 pub(crate) const FONT: &[u8] = include_bytes!("../../../fonts/DejaVuSans-subset.ttf");

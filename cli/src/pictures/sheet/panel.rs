@@ -3,9 +3,9 @@
 use super::text::{self, Style};
 use super::{Panel, PanelLine, Pen, hex};
 use crate::pictures::axis::Axis;
-use crate::pictures::data::{Stability, drawable};
 use crate::pictures::palette::{FAINT, GRID};
 use std::fmt::Write;
+use study::record::view::{Stability, drawable};
 
 const PLOT: [f64; 2] = [400.0, 290.0];
 const TOP: f64 = 30.0;

@@ -1,0 +1,328 @@
+//! Case files: what they may say, what is wrong with them, and what they resolve to.
+//!
+//! A case goes through four steps: `source` finds its text (a file, a shipped case, a problem of
+//! the catalogue), `document` parses it and lays the overrides over it, `resolve` checks every
+//! key and fills in defaults, and `write` says the result as a case file again.
+
+mod catalogue;
+mod device;
+pub(crate) mod document;
+pub(crate) mod error;
+pub(crate) mod name;
+mod physical;
+pub(crate) mod reader;
+pub(crate) mod resolve;
+pub(crate) mod source;
+mod stability;
+mod two_plates;
+mod write;
+
+#[cfg(test)]
+mod tests;
+
+pub use catalogue::catalogue;
+pub use device::DeviceCase;
+pub use document::{Origin, Override, shown};
+pub use error::{CaseError, Complaint, LoadError};
+pub use name::plain_name;
+pub use physical::{PhysicalCase, Stiffness};
+pub use source::{SHIPPED, SWEEPS, find, load, load_text, parse};
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// A case with every default filled in and every value checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResolvedCase {
+    /// Name of the case: of its file, or as it says itself.
+    pub name: String,
+    /// What is solved.
+    pub problem: ProblemCase,
+    /// Which part of the branch is traced.
+    pub path: PathCase,
+    /// How far its diagram is explored.
+    pub diagram: DiagramCase,
+    /// Bounds of the second parameter of a map.
+    pub map: MapCase,
+    /// What a trace or a diagram of a contact case counts as unstable.
+    pub stability: StabilityCase,
+}
+
+/// Which unstable modes of a contact state are counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StabilityCase {
+    /// Those that are axisymmetric and mirror images about the equator.
+    Axisymmetric,
+    /// All but torsion.
+    Full {
+        /// Most waves around the axis.
+        max_n: usize,
+    },
+}
+
+impl StabilityCase {
+    /// The names that a case file may use.
+    pub const NAMES: [&'static str; 2] = ["full", "axisymmetric"];
+}
+
+impl Default for StabilityCase {
+    fn default() -> Self {
+        StabilityCase::Full { max_n: 40 }
+    }
+}
+
+/// What is solved.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ProblemCase {
+    /// A coated microbubble between two plates; the parameter is the plate distance `z0`.
+    Contact(ContactCase),
+    /// The same from pole to pole, between plates of their own.
+    TwoPlates(TwoPlatesCase),
+    /// A shell under a ring load; the parameter is the contact angle `alpha` in degrees.
+    RingLoad(RingLoadCase),
+    /// A problem of the catalogue, by name.
+    Catalogue(CatalogueCase),
+}
+
+/// A microbubble between two plates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactCase {
+    /// The shell's material.
+    pub shell: ShellCase,
+    /// The dimensionless groups, always present.
+    pub groups: Groups,
+    /// The physical parameters the groups came from, if the case gave those.
+    pub physical: Option<Box<PhysicalCase>>,
+    /// The mesh.
+    pub mesh: MeshCase,
+    /// What holds the plates.
+    pub device: DeviceCase,
+}
+
+/// A microbubble from pole to pole between two plates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TwoPlatesCase {
+    /// The shell's material.
+    pub shell: ShellCase,
+    /// `k_b / (chi R0²)`.
+    pub bending: f64,
+    /// `P_A R0 / chi`.
+    pub pressure: f64,
+    /// `gamma_BW / chi`.
+    pub surface_tension: f64,
+    /// The polytropic exponent of the gas.
+    pub gas_exponent: f64,
+    /// The upper plate and the lower; `None` for one that is not there.
+    pub plates: [Option<PlateCase>; 2],
+    /// Whether the equator is held in the mid-plane.
+    pub held: bool,
+    /// The mesh of either half.
+    pub mesh: MeshCase,
+}
+
+impl TwoPlatesCase {
+    /// Name of the continued parameter: half the distance of the plates, or the base of a spring.
+    pub fn parameter(&self) -> &'static str {
+        let [top, _] = self.plates;
+        if top.is_some_and(|plate| plate.stiffness.is_some()) { "base" } else { "z0" }
+    }
+}
+
+/// One of two plates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlateCase {
+    /// `w0 / chi`.
+    pub adhesion: f64,
+    /// `delta_A / R0`.
+    pub film: f64,
+    /// `k_c` of the cantilever that it hangs on, in `sqrt(chi k_b)/R0`; rigid without one.
+    pub stiffness: Option<f64>,
+}
+
+/// A shell under a ring load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RingLoadCase {
+    /// The shell's material.
+    pub shell: ShellCase,
+    /// `k_b / (chi R0²)`.
+    pub bending: f64,
+    /// `P_A R0 / chi`.
+    pub pressure: f64,
+    /// The polytropic exponent of the gas: 0 is constant pressure.
+    pub gas_exponent: f64,
+    /// The mesh.
+    pub mesh: MeshCase,
+}
+
+/// A problem of the catalogue.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CatalogueCase {
+    /// Its name.
+    pub name: String,
+    /// Its parameters by name, the continued one not among them.
+    pub parameters: BTreeMap<String, f64>,
+    /// Number of elements, for problems that have a mesh.
+    pub elements: Option<usize>,
+}
+
+/// A shell's material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShellCase {
+    /// The law of the membrane.
+    pub law: Law,
+    /// Poisson's ratio.
+    pub poisson: f64,
+}
+
+/// The law of the membrane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    /// Hooke's law.
+    Hooke,
+    /// Mooney-Rivlin, strain softening.
+    MooneyRivlin {
+        /// 0 is neo-Hookean, 1 the other end of the law.
+        b: f64,
+    },
+    /// Skalak, strain hardening.
+    Skalak,
+}
+
+impl Law {
+    /// The names that a case file may use.
+    pub const NAMES: [&'static str; 3] = ["hooke", "mooney-rivlin", "skalak"];
+}
+
+impl fmt::Display for Law {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Law::Hooke => Law::NAMES[0],
+            Law::MooneyRivlin { .. } => Law::NAMES[1],
+            Law::Skalak => Law::NAMES[2],
+        })
+    }
+}
+
+/// The dimensionless groups of the contact problem.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Groups {
+    /// `k_b / (chi R0²)`.
+    pub bending: f64,
+    /// `P_A R0 / chi`.
+    pub pressure: f64,
+    /// `w0 / chi`.
+    pub adhesion: f64,
+    /// `delta_A / R0`.
+    pub film: f64,
+    /// `gamma_BW / chi`.
+    pub surface_tension: f64,
+    /// The polytropic exponent of the gas.
+    pub gas_exponent: f64,
+}
+
+/// The mesh along the meridian.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshCase {
+    /// Number of elements.
+    pub elements: usize,
+    /// Longest element over shortest, shrinking towards the pole; uniform without it.
+    pub grading: Option<f64>,
+}
+
+/// Which part of the branch is traced.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathCase {
+    /// Where the continued parameter starts.
+    pub start: f64,
+    /// Where it ends.
+    pub end: f64,
+    /// Longest step, as arclength in the problem's metric; the tracer's default without it.
+    pub max_step: Option<f64>,
+    /// Shortest step, likewise.
+    pub min_step: Option<f64>,
+    /// Largest number of points.
+    pub max_points: usize,
+    /// Number of eigenvalues to compute at every point.
+    pub eigenvalues: usize,
+}
+
+/// How far a diagram is explored.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DiagramCase {
+    /// Most branch points between a branch and the first one.
+    pub depth: usize,
+    /// Most branches.
+    pub max_branches: usize,
+    /// Bounds of the parameter, in which the first branch is followed both ways; without them it
+    /// goes from the path's start to its end, and the others stay where it has been.
+    pub within: Option<(f64, f64)>,
+    /// Whether disconnected branches are sought beside near-bifurcations.
+    pub search: bool,
+}
+
+impl Default for DiagramCase {
+    fn default() -> Self {
+        DiagramCase { depth: 2, max_branches: 1000, within: None, search: true }
+    }
+}
+
+/// Bounds of the second parameter of a map; the command has defaults.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct MapCase {
+    /// The lower one.
+    pub from: Option<f64>,
+    /// The upper one.
+    pub to: Option<f64>,
+}
+
+/// What the command line needs to know about a problem of the catalogue.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CatalogueEntry {
+    /// Its name on the command line and in case files.
+    pub name: String,
+    /// One line for people.
+    pub summary: String,
+    /// Name of the continued parameter.
+    pub parameter: String,
+    /// Where the continued parameter starts by default.
+    pub start: f64,
+    /// Where it ends by default.
+    pub end: f64,
+    /// Where the continued parameter may start.
+    pub start_allowed: problems::Allowed,
+    /// The other parameters.
+    pub parameters: Vec<CatalogueParameter>,
+    /// Number of elements, for problems that have a mesh.
+    pub elements: Option<ElementRange>,
+}
+
+/// A parameter of a problem of the catalogue.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CatalogueParameter {
+    /// Its name.
+    pub name: String,
+    /// Its default.
+    pub default: f64,
+    /// What it may be.
+    pub allowed: problems::Allowed,
+}
+
+/// How many elements a mesh may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ElementRange {
+    /// The default.
+    pub default: usize,
+    /// The smallest.
+    pub least: usize,
+    /// The largest.
+    pub most: usize,
+}
+
+/// A case, and what deserves to be said about it though it is not wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadedCase {
+    /// The case.
+    pub case: ResolvedCase,
+    /// Remarks for people.
+    pub notes: Vec<String>,
+}

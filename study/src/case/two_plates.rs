@@ -1,0 +1,147 @@
+//! A case between two plates of their own: `[plate.top]`, `[plate.bottom]`, `equator`.
+
+use super::document::Value;
+use super::error::Complaint;
+use super::reader::{ANY, POSITIVE, Section};
+use super::resolve::{CONTACT_START, HOMES, Resolver};
+use super::{PathCase, PlateCase, ProblemCase, TwoPlatesCase};
+
+/// Keys of the whole shell; those of the films are the plates'.
+const GROUPS: &[&str] = &["bending", "pressure", "surface_tension", "gas_exponent"];
+/// Keys of a plate.
+const PLATE: &[&str] = &["adhesion", "film", "device", "stiffness"];
+/// The tables of the plates.
+const TABLES: [(&str, &str); 2] = [("top", "plate.top"), ("bottom", "plate.bottom")];
+
+/// What may be said of the equator.
+pub(super) const EQUATOR: [&str; 2] = ["free", "held"];
+/// What may hold a plate.
+pub(super) const DEVICES: [&str; 2] = ["grip", "cantilever"];
+
+impl<'a> Resolver<'a> {
+    pub(super) fn two_plates(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
+        let tables = [
+            "name",
+            "problem",
+            "equator",
+            "shell",
+            "dimensionless",
+            "plate",
+            "mesh",
+            "path",
+            "diagram",
+            "map",
+            "stability",
+        ];
+        self.reader.only(self.root, &tables, HOMES);
+        let shell = self.shell();
+        let groups = self.reader.section(self.root, "dimensionless");
+        let homes: Vec<_> = std::iter::once((TABLES[0].1, PLATE)).chain(HOMES.to_vec()).collect();
+        self.reader.only(groups, GROUPS, &homes);
+        let groups = self.groups_without_film(groups);
+        let held = self.equator();
+        let plates = self.plates(held.unwrap_or(false));
+        let mesh = self.mesh();
+        let on_spring = plates.is_some_and(|[top, _]| top.is_some_and(|p| p.stiffness.is_some()));
+        let (start, end) = if on_spring { (ANY, ANY) } else { (CONTACT_START, POSITIVE) };
+        let path = self.path(None, start, end);
+        let problem = match (shell, groups, plates, held, mesh) {
+            (Some(shell), Some(groups), Some(plates), Some(held), Some(mesh)) => {
+                let [bending, pressure, surface_tension, gas_exponent] = groups;
+                Some(ProblemCase::TwoPlates(TwoPlatesCase {
+                    shell,
+                    bending,
+                    pressure,
+                    surface_tension,
+                    gas_exponent,
+                    plates,
+                    held,
+                    mesh,
+                }))
+            }
+            _ => None,
+        };
+        (problem, path)
+    }
+
+    /// Whether the equator is held.
+    fn equator(&self) -> Option<bool> {
+        if self.root.get("equator").is_none() {
+            return Some(false);
+        }
+        self.reader.word(self.root, "equator", &EQUATOR).map(|word| word == EQUATOR[1])
+    }
+
+    /// Both plates; one may be absent if something else holds the shell.
+    fn plates(&self, held: bool) -> Option<[Option<PlateCase>; 2]> {
+        let plate = self.reader.section(self.root, "plate");
+        self.reader.only(plate, &TABLES.map(|(key, _)| key), HOMES);
+        let mut plates = [None; 2];
+        let mut good = true;
+        for (k, (key, name)) in TABLES.into_iter().enumerate() {
+            let Some(node) = plate.get(key) else { continue };
+            let Value::Table(table) = &node.value else {
+                self.reader.wrong_type(plate, key, node, &format!("a table [{name}]"), "");
+                good = false;
+                continue;
+            };
+            let section = Section::of(name, node.origin, table);
+            self.reader.only(section, PLATE, HOMES);
+            plates[k] = self.plate(section, k == 0);
+            good &= plates[k].is_some();
+        }
+        let absent: Vec<&str> = TABLES
+            .iter()
+            .filter(|(key, _)| plate.get(key).is_none())
+            .map(|(key, _)| *key)
+            .collect();
+        match absent[..] {
+            [] => {}
+            [_] if held => {}
+            [key] => {
+                let hint = "give its adhesion and film; a shell before one plate alone needs \
+                            equator = \"held\", or it leaves that plate for good";
+                self.reader.missing(plate, key, hint);
+                good = false;
+            }
+            _ => {
+                let hint = "give adhesion and film of both plates, [plate.top] and [plate.bottom]";
+                self.reader.missing(self.root, "plate", hint);
+                good = false;
+            }
+        }
+        good.then_some(plates)
+    }
+
+    fn plate(&self, section: Section<'a>, top: bool) -> Option<PlateCase> {
+        let adhesion = self.reader.required(section, "adhesion", POSITIVE);
+        let film = self.reader.required(section, "film", POSITIVE);
+        let device = match section.get("device") {
+            None => Some(DEVICES[0]),
+            Some(_) => self.reader.word(section, "device", &DEVICES),
+        };
+        let stiffness = self.reader.number(section, "stiffness", POSITIVE);
+        let given = section.get("stiffness");
+        let cantilever = device? == DEVICES[1];
+        if let (true, false, Some(node)) = (cantilever, top, section.get("device")) {
+            let why = "only the upper plate may hang on a cantilever: give it to [plate.top]";
+            self.reader.refuse(section, "device", node, Complaint::Conflict(why.to_owned()));
+            return None;
+        }
+        match (cantilever, given) {
+            (true, None) => {
+                let hint = "a cantilever needs its stiffness, in sqrt(chi k_b)/R0";
+                self.reader.missing(section, "stiffness", hint);
+                return None;
+            }
+            (false, Some(node)) => {
+                let why = "a grip has none; say device = \"cantilever\", or leave it out";
+                self.reader.refuse(section, "stiffness", node, Complaint::Conflict(why.to_owned()));
+                return None;
+            }
+            _ => {}
+        }
+        let stiffness = if cantilever { Some(stiffness?) } else { None };
+        Some(PlateCase { adhesion: adhesion?, film: film?, stiffness })
+    }
+}

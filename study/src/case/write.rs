@@ -1,0 +1,228 @@
+//! A resolved case as a case file again: everything written out, nothing left to defaults.
+
+use super::two_plates::{DEVICES, EQUATOR};
+use super::{
+    ContactCase, DiagramCase, Groups, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase,
+    ShellCase, StabilityCase, TwoPlatesCase,
+};
+use super::{Law, PhysicalCase, Stiffness};
+use std::fmt::Write as _;
+
+impl ResolvedCase {
+    /// The case as TOML; reading it gives the same case again.
+    pub fn to_toml(&self) -> String {
+        let mut out = Lines(String::new());
+        out.line("# Resolved case: every default is written out.");
+        out.text("name", &self.name);
+        match &self.problem {
+            ProblemCase::Contact(case) => contact(&mut out, case),
+            ProblemCase::TwoPlates(case) => two_plates(&mut out, case),
+            ProblemCase::RingLoad(case) => {
+                out.text("problem", "ring-load");
+                shell(&mut out, case.shell);
+                out.table("dimensionless");
+                out.number("bending", case.bending);
+                out.number("pressure", case.pressure);
+                out.number("gas_exponent", case.gas_exponent);
+                mesh(&mut out, case.mesh);
+            }
+            ProblemCase::Catalogue(case) => {
+                out.text("problem", &case.name);
+                if !case.parameters.is_empty() {
+                    out.table("parameters");
+                    for (name, value) in &case.parameters {
+                        out.number(name, *value);
+                    }
+                }
+                if let Some(elements) = case.elements {
+                    out.table("mesh");
+                    out.count("elements", elements);
+                }
+            }
+        }
+        path(&mut out, &self.path);
+        diagram(&mut out, &self.diagram);
+        map(&mut out, self.map);
+        if matches!(self.problem, ProblemCase::Contact(_) | ProblemCase::TwoPlates(_)) {
+            stability(&mut out, self.stability);
+        }
+        out.0
+    }
+}
+
+fn contact(out: &mut Lines, case: &ContactCase) {
+    out.text("problem", "contact");
+    shell(out, case.shell);
+    match &case.physical {
+        None => {
+            out.table("dimensionless");
+            groups(out, "", &case.groups);
+        }
+        Some(given) => {
+            out.table("physical");
+            physical(out, given);
+            out.line("# in dimensionless groups:");
+            groups(out, "#   ", &case.groups);
+        }
+    }
+    mesh(out, case.mesh);
+    out.table("device");
+    out.text("kind", case.device.name());
+    if let Some(stiffness) = case.device.stiffness() {
+        out.number("stiffness", stiffness);
+    }
+}
+
+fn two_plates(out: &mut Lines, case: &TwoPlatesCase) {
+    out.text("problem", "two-plates");
+    out.text("equator", EQUATOR[usize::from(case.held)]);
+    shell(out, case.shell);
+    out.table("dimensionless");
+    out.number("bending", case.bending);
+    out.number("pressure", case.pressure);
+    out.number("surface_tension", case.surface_tension);
+    out.number("gas_exponent", case.gas_exponent);
+    for (name, plate) in ["plate.top", "plate.bottom"].into_iter().zip(case.plates) {
+        let Some(plate) = plate else { continue };
+        out.table(name);
+        out.number("adhesion", plate.adhesion);
+        out.number("film", plate.film);
+        out.text("device", DEVICES[usize::from(plate.stiffness.is_some())]);
+        if let Some(stiffness) = plate.stiffness {
+            out.number("stiffness", stiffness);
+        }
+    }
+    mesh(out, case.mesh);
+}
+
+fn shell(out: &mut Lines, shell: ShellCase) {
+    out.table("shell");
+    out.text("law", &shell.law.to_string());
+    out.number("poisson", shell.poisson);
+    if let Law::MooneyRivlin { b } = shell.law {
+        out.number("b", b);
+    }
+}
+
+fn groups(out: &mut Lines, prefix: &str, groups: &Groups) {
+    let all = [
+        ("bending", groups.bending, "k_b / (chi R0^2)"),
+        ("pressure", groups.pressure, "P_A R0 / chi"),
+        ("adhesion", groups.adhesion, "w0 / chi"),
+        ("film", groups.film, "delta_A / R0"),
+        ("surface_tension", groups.surface_tension, "gamma_BW / chi"),
+        ("gas_exponent", groups.gas_exponent, "polytropic exponent of the gas"),
+    ];
+    for (key, value, meaning) in all {
+        out.line(&format!("{prefix}{:<42} # {meaning}", format!("{key} = {value:?}")));
+    }
+}
+
+fn physical(out: &mut Lines, given: &PhysicalCase) {
+    out.text("radius", &given.radius.text);
+    match &given.stiffness {
+        Stiffness::Homogeneous { young, thickness } => {
+            out.text("young", &young.text);
+            out.text("thickness", &thickness.text);
+        }
+        Stiffness::Moduli { chi, bending } => {
+            out.text("chi", &chi.text);
+            out.text("bending", &bending.text);
+        }
+    }
+    out.text("pressure", &given.pressure.text);
+    out.text("adhesion", &given.adhesion.text);
+    out.text("film", &given.film.text);
+    out.text("surface_tension", &given.surface_tension.text);
+    out.number("gas_exponent", given.gas_exponent);
+}
+
+fn mesh(out: &mut Lines, mesh: MeshCase) {
+    out.table("mesh");
+    out.count("elements", mesh.elements);
+    if let Some(grading) = mesh.grading {
+        out.number("grading", grading);
+    }
+}
+
+fn path(out: &mut Lines, path: &PathCase) {
+    out.table("path");
+    out.number("start", path.start);
+    out.number("end", path.end);
+    if let Some(step) = path.max_step {
+        out.number("max_step", step);
+    }
+    if let Some(step) = path.min_step {
+        out.number("min_step", step);
+    }
+    out.count("max_points", path.max_points);
+    if path.eigenvalues > 0 {
+        out.count("eigenvalues", path.eigenvalues);
+    }
+}
+
+fn diagram(out: &mut Lines, diagram: &DiagramCase) {
+    out.table("diagram");
+    out.count("depth", diagram.depth);
+    out.count("max_branches", diagram.max_branches);
+    out.text("search", if diagram.search { "near-bifurcations" } else { "none" });
+    if let Some((low, high)) = diagram.within {
+        out.number("from", low);
+        out.number("to", high);
+    }
+}
+
+fn map(out: &mut Lines, map: MapCase) {
+    if map != MapCase::default() {
+        out.table("map");
+    }
+    for (key, value) in [("from", map.from), ("to", map.to)] {
+        if let Some(value) = value {
+            out.number(key, value);
+        }
+    }
+}
+
+fn stability(out: &mut Lines, stability: StabilityCase) {
+    out.table("stability");
+    match stability {
+        StabilityCase::Full { max_n } => {
+            out.text("scan", StabilityCase::NAMES[0]);
+            out.count("max_n", max_n);
+        }
+        StabilityCase::Axisymmetric => out.text("scan", StabilityCase::NAMES[1]),
+    }
+}
+
+/// TOML, line by line.
+struct Lines(String);
+
+impl Lines {
+    fn line(&mut self, line: &str) {
+        let _ = writeln!(self.0, "{line}");
+    }
+
+    fn table(&mut self, name: &str) {
+        self.line(&format!("\n[{name}]"));
+    }
+
+    fn text(&mut self, key: &str, value: &str) {
+        self.line(&format!("{} = {}", quoted(key), toml::Value::String(value.to_string())));
+    }
+
+    fn number(&mut self, key: &str, value: f64) {
+        self.line(&format!("{} = {value:?}", quoted(key)));
+    }
+
+    fn count(&mut self, key: &str, value: usize) {
+        self.line(&format!("{key} = {value}"));
+    }
+}
+
+/// A key, in quotes if it must be.
+fn quoted(key: &str) -> String {
+    if !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
+        return key.to_string();
+    }
+    toml::Value::String(key.to_string()).to_string()
+}

@@ -1,0 +1,212 @@
+//! Fits of measured curves: what is known, the computation, and what becomes files.
+
+pub mod files;
+pub mod lab;
+pub mod plan;
+
+use identify::data::read::LARGEST;
+use identify::data::{jpk, read};
+use identify::fit::Setup;
+use identify::record::Warning;
+use identify::uncertainty::Quantity;
+use identify::{FitError, Identification, LawName, Profiles};
+use lab::{Lab, Wishes};
+use std::path::{Path, PathBuf};
+
+/// Difference of `χ²` below which two laws cannot be told apart.
+const INDISTINGUISHABLE: f64 = 6.0;
+
+/// What to fit with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Laws {
+    /// That of the laboratory's file.
+    Known,
+    /// This one.
+    One(LawName),
+    /// Each; the best is reported.
+    All,
+}
+
+/// A fit of one curve by one or several laws.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// The best.
+    pub best: Identification,
+    /// Each law's `χ²/dof`, or why it has none.
+    pub laws: Vec<(LawName, Result<f64, String>)>,
+}
+
+/// Why a curve has no fit.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Failure {
+    /// Its file, or what is known, is wrong.
+    Input(String),
+    /// Nothing fits it.
+    NotFound(String),
+}
+
+impl Failure {
+    /// What happened.
+    pub fn message(&self) -> &str {
+        match self {
+            Failure::Input(message) | Failure::NotFound(message) => message,
+        }
+    }
+}
+
+/// Reads a list of quantities, or `none`.
+pub fn profiles(text: Option<&str>) -> Result<Profiles, String> {
+    match text.map(str::trim) {
+        None => Ok(Profiles::WhereNeeded),
+        Some("none") => Ok(Profiles::None),
+        Some(list) => {
+            let each = list.split(',').map(str::trim).map(|name| {
+                Quantity::of(name).ok_or_else(|| {
+                    format!(
+                        "--profile {name}: unknown; allowed: none, or young, thickness, sqrt_chi_kb, \
+                         chi, bending, adhesion, film, radius, apart by commas"
+                    )
+                })
+            });
+            Ok(Profiles::These(each.collect::<Result<_, _>>()?))
+        }
+    }
+}
+
+/// Where a curve is: a file, or a place in a map.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// The file.
+    pub path: PathBuf,
+    /// Its number in a map of which all curves are fitted.
+    pub number: Option<usize>,
+}
+
+impl Source {
+    /// What messages call it.
+    pub fn label(&self) -> String {
+        let file = self.path.display();
+        match self.number {
+            None => file.to_string(),
+            Some(number) => format!("{file}, curve {number}"),
+        }
+    }
+}
+
+/// The curves of the files: of a map all, unless `data.curve` chooses one.
+pub fn sources(paths: &[PathBuf], lab: &Lab) -> Vec<Source> {
+    let one = |path: &PathBuf| {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let map = lab.layout.curve.is_none() && jpk::MAPS.contains(&ending.as_str());
+        // what cannot be read is told when it is its turn
+        let numbers = map.then(|| jpk::numbers(&bytes(path).ok()?).ok()).flatten();
+        let source = |number| Source { path: path.clone(), number };
+        match numbers.unwrap_or_default() {
+            numbers if numbers.len() > 1 => numbers.into_iter().map(|n| source(Some(n))).collect(),
+            _ => vec![source(None)],
+        }
+    };
+    paths.iter().flat_map(one).collect()
+}
+
+/// The content of a file, unless it is too long for a curve.
+fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+    let file = path.display();
+    let unreadable = |error| format!("{file}: cannot be read: {error}");
+    let size = std::fs::metadata(path).map_err(unreadable)?.len();
+    if size > LARGEST {
+        return Err(format!("{file}: longer than {LARGEST} bytes; this is not a curve"));
+    }
+    std::fs::read(path).map_err(unreadable)
+}
+
+/// Fits a curve.
+pub fn fit_file(
+    source: &Source,
+    lab: &Lab,
+    laws: Laws,
+    wishes: Wishes<'_>,
+    profiles: &Profiles,
+) -> Result<Outcome, Failure> {
+    let path = source.path.display().to_string();
+    let file = source.label();
+    let input = |message: String| Failure::Input(message);
+    let bytes = bytes(&source.path).map_err(input)?;
+    let mut layout = lab.layout(wishes);
+    layout.curve = source.number.or(layout.curve);
+    let mut curve = read(&path, &bytes, &layout).map_err(|error| {
+        let message = error.to_string();
+        // of a map, which curve
+        let rest = message.strip_prefix(&path).map(|rest| format!("{file}{rest}"));
+        input(rest.unwrap_or(message))
+    })?;
+    curve.name.clone_from(&file);
+    let chosen: Vec<LawName> = match laws {
+        Laws::All => LawName::ALL.to_vec(),
+        Laws::One(law) => vec![law],
+        Laws::Known => match lab.law {
+            Some(law) => vec![law],
+            None => {
+                return Err(input(
+                    "shell.law: missing; say law = \"hooke\", \"mooney-rivlin\" or \"skalak\" in the file \
+                     of known values, or --law NAME, or --law all"
+                        .to_owned(),
+                ));
+            }
+        },
+    };
+    let mut found: Vec<(LawName, Setup, Result<Identification, FitError>)> = Vec::new();
+    for law in chosen {
+        let setup = lab.setup(law, curve.spring_constant, wishes).map_err(input)?;
+        let fitted = identify::identify(&curve, &setup, profiles);
+        found.push((law, setup, fitted));
+    }
+    let chi2 = |i: &Identification| i.report.quality.chi2_dof;
+    let laws: Vec<(LawName, Result<f64, String>)> = found
+        .iter()
+        .map(|(law, _, fit)| (*law, fit.as_ref().map(chi2).map_err(ToString::to_string)))
+        .collect();
+    found.sort_by(|a, b| {
+        let of = |f: &Result<Identification, FitError>| f.as_ref().map_or(f64::INFINITY, chi2);
+        of(&a.2).total_cmp(&of(&b.2))
+    });
+    let second = found.get(1).and_then(|(law, _, fit)| Some((*law, chi2(fit.as_ref().ok()?))));
+    let Some((_, setup, best)) = found.into_iter().next() else {
+        return Err(input("no law".to_owned()));
+    };
+    let mut best = best.map_err(|error| match error {
+        FitError::NoStart | FitError::Model(_) => Failure::NotFound(format!("{file}: {error}")),
+        other => Failure::Input(format!("{file}: {other}")),
+    })?;
+    if let (Some(stated), known) =
+        (curve.spring_constant, setup.base[identify::Key::SpringConstant])
+        && (stated / known - 1.0).abs() > 1e-6
+    {
+        let text = format!(
+            "the curve's file states a spring constant of {stated} N/m; {known} N/m is taken, as the \
+             file of known values says, and forces are those of the same deflections"
+        );
+        best.report.warnings.push(Warning { code: "spring-constant-differs", text });
+    }
+    for note in &curve.notes {
+        best.report.warnings.push(Warning { code: "data", text: note.clone() });
+    }
+    if lab.radius_is_exact() && !setup.free.contains(&identify::Key::Radius) {
+        let text =
+            "the radius stands without an error (radius_sd) and is kept; an optical radius has one";
+        best.report.warnings.push(Warning { code: "radius-exact", text: text.to_owned() });
+    }
+    if let Some((law, other)) = second {
+        let dof = best.report.quality.samples_used as f64;
+        if (other - chi2(&best)) * dof < INDISTINGUISHABLE {
+            let text = format!(
+                "the laws {} and {} describe the curve equally well; it does not reach strains that tell \
+                 them apart",
+                best.report.law,
+                law.name()
+            );
+            best.report.warnings.push(Warning { code: "laws-indistinguishable", text });
+        }
+    }
+    Ok(Outcome { best, laws })
+}

@@ -1,0 +1,178 @@
+//! `events.json`: special points, why the branch ended, what it cost.
+
+use super::result::{EventRecord, MaxwellRecord, ResolutionRecord, StabilityRecord, TraceResult};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+/// The JSON, indented, with a newline at the end; NaN and infinities are null.
+///
+/// # Errors
+/// What the writer reports; memory does not fail, so none is expected.
+pub fn events_json(result: &TraceResult) -> Result<String, serde_json::Error> {
+    let mut text = serde_json::to_string_pretty(&Document(result))?;
+    text.push('\n');
+    Ok(text)
+}
+
+struct Document<'a>(&'a TraceResult);
+
+impl Serialize for Document<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let result = self.0;
+        let events: Vec<EventOf<'_>> = result
+            .events
+            .iter()
+            .map(|event| EventOf { event, parameter: &result.parameter })
+            .collect();
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("case", &result.case)?;
+        map.serialize_entry("parameter", &result.parameter)?;
+        map.serialize_entry("events", &events)?;
+        if let Some(maxwell) = &result.maxwell {
+            map.serialize_entry("maxwell", &maxwell_of(maxwell))?;
+        }
+        if let Some(stability) = &result.stability {
+            map.serialize_entry("stability", &StabilityOf(stability))?;
+        }
+        if let Some(resolution) = &result.resolution {
+            map.serialize_entry("resolution", &ResolutionOf(resolution))?;
+        }
+        map.serialize_entry("stopped_because", &result.stopped_because.to_string())?;
+        map.serialize_entry("stopped_detail", &result.stopped_detail)?;
+        map.serialize_entry("points", &result.points)?;
+        map.serialize_entry("certified", &result.certified)?;
+        map.serialize_entry("newton_iterations", &result.newton_iterations)?;
+        map.serialize_entry("seconds", &result.seconds)?;
+        map.end()
+    }
+}
+
+/// What was examined.
+pub(super) struct StabilityOf<'a>(pub(super) &'a StabilityRecord);
+
+impl Serialize for StabilityOf<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("scan", if self.0.full { "full" } else { "axisymmetric" })?;
+        if self.0.both_parities {
+            map.serialize_entry("parities", &["symmetric", "antisymmetric"])?;
+        }
+        if self.0.full {
+            map.serialize_entry("max_n", &self.0.max_n)?;
+            map.serialize_entry("certain", &self.0.certain)?;
+            map.serialize_entry("not_located", &self.0.not_located)?;
+        }
+        map.end()
+    }
+}
+
+/// How well the elements resolve the solution.
+pub(super) struct ResolutionOf<'a>(pub(super) &'a ResolutionRecord);
+
+impl Serialize for ResolutionOf<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("enough", &self.0.enough)?;
+        map.serialize_entry("z0", &self.0.z0)?;
+        map.serialize_entry("elements_per_film_length", &self.0.per_film_length)?;
+        map.serialize_entry("elements_per_wavelength", &self.0.per_wavelength)?;
+        map.serialize_entry("elements", &self.0.elements)?;
+        map.serialize_entry("elements_wanted", &self.0.wanted)?;
+        map.end()
+    }
+}
+
+/// A special point with the name of its parameter.
+pub(super) struct EventOf<'a> {
+    pub(super) event: &'a EventRecord,
+    pub(super) parameter: &'a str,
+}
+
+impl Serialize for EventOf<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let event = self.event;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("kind", &event.kind)?;
+        map.serialize_entry("parameter", self.parameter)?;
+        map.serialize_entry(self.parameter, &event.parameter)?;
+        entry(&mut map, "z0", event.z0)?;
+        if self.parameter != "force" {
+            map.serialize_entry("force", &event.force)?;
+        }
+        map.serialize_entry("deformation", &event.deformation)?;
+        map.serialize_entry("energy_total", &event.energy_total)?;
+        map.serialize_entry("unstable_before", &event.unstable_before)?;
+        map.serialize_entry("unstable_after", &event.unstable_after)?;
+        map.serialize_entry("residual", &event.residual)?;
+        map.serialize_entry("error_estimate", &event.error_estimate)?;
+        let form = &event.form;
+        entry(&mut map, "type", form.kind)?;
+        entry(&mut map, "criticality", form.criticality)?;
+        entry(&mut map, "multiplicity", form.multiplicity)?;
+        entry(&mut map, "branches", form.branches)?;
+        entry(&mut map, "curvature", form.curvature)?;
+        entry(&mut map, "order", form.order)?;
+        entry(&mut map, "frequency", form.frequency)?;
+        entry(&mut map, "lyapunov", form.lyapunov)?;
+        entry(&mut map, "lyapunov_error", form.lyapunov_error)?;
+        entry(&mut map, "certified", form.certified)?;
+        if let Some(mode) = &event.mode {
+            map.serialize_entry("n", &mode.n)?;
+            map.serialize_entry("parity", mode.parity)?;
+            map.serialize_entry("modes_before", &mode.before)?;
+            map.serialize_entry("modes_after", &mode.after)?;
+        }
+        if !event.observables.is_empty() {
+            map.serialize_entry("observables", &Named(&event.observables))?;
+        }
+        map.end()
+    }
+}
+
+/// Maxwell points as JSON.
+pub(super) fn maxwell_of(points: &[MaxwellRecord]) -> Vec<MaxwellOf<'_>> {
+    points.iter().map(MaxwellOf).collect()
+}
+
+/// A pair of states of equal potential; what both share is a number, the rest an array of two.
+pub(super) struct MaxwellOf<'a>(&'a MaxwellRecord);
+
+impl Serialize for MaxwellOf<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let point = self.0;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry(point.parameter, &point.value)?;
+        if point.parameter != "z0" {
+            map.serialize_entry("potential", &point.potential)?;
+            map.serialize_entry("z0", &point.z0)?;
+            map.serialize_entry("energy_totals", &point.energy)?;
+        } else {
+            map.serialize_entry("energy_total", &point.potential)?;
+        }
+        if point.parameter != "force" {
+            map.serialize_entry("force", &point.force)?;
+        }
+        map.serialize_entry("unstable", &point.unstable)?;
+        map.serialize_entry("error_estimate", &point.error_estimate)?;
+        map.end()
+    }
+}
+
+struct Named<'a>(&'a [(String, f64)]);
+
+impl Serialize for Named<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}
+
+/// Writes an entry that may not apply.
+fn entry<M: SerializeMap, V: Serialize>(
+    map: &mut M,
+    key: &str,
+    value: Option<V>,
+) -> Result<(), M::Error> {
+    match value {
+        Some(value) => map.serialize_entry(key, &value),
+        None => Ok(()),
+    }
+}

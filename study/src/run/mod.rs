@@ -1,0 +1,208 @@
+//! Runs: a checked case goes in, the solvers work, plain numbers come out.
+
+mod asymmetric;
+mod contact;
+mod cycle;
+mod diagram;
+mod form;
+mod general;
+mod map;
+mod resolution;
+mod ring_load;
+mod stability;
+mod states;
+mod sweep;
+mod two_plates;
+mod ways;
+
+pub use contact::{branch as contact_branch, result as contact_result};
+pub use cycle::run_cycle;
+pub use map::{MapError, run_map};
+pub use ring_load::AXES as RING_AXES;
+pub use sweep::{Outcome, run_sweep};
+
+use crate::case::{PathCase, ProblemCase, ResolvedCase};
+use crate::record::TraceResult;
+use continuation::{Settings, TraceError};
+use std::ops::ControlFlow;
+
+pub use diagram::{DiagramObserver, DiagramProgress, Keep, KeepNothing, Saved, run_diagram};
+
+/// How far a trace has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Points so far.
+    pub points: usize,
+    /// Special points so far.
+    pub events: usize,
+    /// Value of the continued parameter.
+    pub parameter: f64,
+}
+
+/// Told of every point; may stop the trace.
+pub type Observer<'o> = dyn FnMut(Progress) -> ControlFlow<()> + 'o;
+
+/// Why there is no result at all. A branch that stops early is a result.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// No solver for this kind of problem in this program.
+    #[error("{case}: problem \"{problem}\" cannot be traced by this version of arclen")]
+    NotAvailable {
+        /// Name of the case.
+        case: String,
+        /// Name of the problem.
+        problem: String,
+    },
+    /// The model refuses the parameters.
+    #[error("{case}: {error}")]
+    Parameters {
+        /// Name of the case.
+        case: String,
+        /// What it says.
+        error: shell_contact::ParameterError,
+    },
+    /// The problem of the catalogue refuses the case.
+    #[error("{case}: {error}")]
+    Problem {
+        /// Name of the case.
+        case: String,
+        /// What it says.
+        error: problems::ProblemError,
+    },
+    /// The diagram cannot be explored.
+    #[error("{case}: {error}")]
+    Diagram {
+        /// Name of the case.
+        case: String,
+        /// What happened.
+        error: continuation::diagram::DiagramError,
+    },
+    /// No stable state under a device.
+    #[error("{case}: path.start = {start}: {detail}; choose another start, or another device")]
+    NotHeld {
+        /// Name of the case.
+        case: String,
+        /// The start asked for.
+        start: f64,
+        /// What happened.
+        detail: shell_contact::device::StartError,
+    },
+    /// A device where only a grip can be.
+    #[error(
+        "{case}: device.kind = \"{device}\": only trace and cycle know devices; leave out the table \
+         [device], or say --set device.kind=grip"
+    )]
+    Device {
+        /// Name of the case.
+        case: String,
+        /// The device.
+        device: &'static str,
+    },
+    /// A command that sees mirror-symmetric states only.
+    #[error(
+        "{case}: problem \"two-plates\": {command} knows mirror-symmetric states only: \
+         problem = \"contact\", with adhesion and film in [dimensionless]"
+    )]
+    MirrorOnly {
+        /// Name of the case.
+        case: String,
+        /// What was asked for.
+        command: &'static str,
+    },
+    /// A problem without plates.
+    #[error("{case}: problem \"{problem}\": a cycle needs plates: problem = \"contact\"")]
+    NoPlates {
+        /// Name of the case.
+        case: String,
+        /// Name of the problem.
+        problem: String,
+    },
+    /// A cycle that cannot begin.
+    #[error("{case}: path.start = {start}: {detail}; choose another start")]
+    Cycle {
+        /// Name of the case.
+        case: String,
+        /// The start asked for.
+        start: f64,
+        /// What happened.
+        detail: shell_contact::device::CycleError,
+    },
+    /// Not even the first point could be computed.
+    #[error("{case}: path.start = {start}: {detail}; {remedy}")]
+    NoStart {
+        /// Name of the case.
+        case: String,
+        /// The start asked for.
+        start: f64,
+        /// What happened.
+        detail: TraceError,
+        /// What to do.
+        remedy: &'static str,
+    },
+}
+
+/// Trace a case. The observer hears of every point and may stop the trace; what was computed until
+/// then is kept, with [`continuation::StopReason::Interrupted`].
+///
+/// # Errors
+/// When there is no result at all.
+pub fn run_trace(
+    case: &ResolvedCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    match &case.problem {
+        ProblemCase::Contact(contact) => contact::run(case, contact, observer),
+        ProblemCase::TwoPlates(plates) => two_plates::run(case, plates, observer),
+        ProblemCase::RingLoad(ring) => ring_load::run(case, ring, false, observer),
+        ProblemCase::Catalogue(problem) => general::run(case, problem, observer),
+    }
+}
+
+/// The same with the states along the branch, for a report.
+///
+/// # Errors
+/// When there is no result at all.
+pub fn run_trace_reported(
+    case: &ResolvedCase,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
+    match &case.problem {
+        ProblemCase::Contact(contact) => contact::run_reported(case, contact, observer),
+        ProblemCase::RingLoad(ring) => ring_load::run(case, ring, true, observer),
+        ProblemCase::TwoPlates(_) | ProblemCase::Catalogue(_) => run_trace(case, observer),
+    }
+}
+
+/// The same without what pictures show, for cases of which there are many.
+fn run_plain(case: &ResolvedCase, observer: &mut Observer<'_>) -> Result<TraceResult, RunError> {
+    match &case.problem {
+        ProblemCase::Contact(contact) => contact::run_plain(case, contact, observer),
+        _ => run_trace(case, observer),
+    }
+}
+
+/// The tracer's settings for a path.
+fn settings(path: &PathCase) -> Settings {
+    Settings {
+        target: Some(path.end),
+        max_step: path.max_step,
+        min_step: path.min_step,
+        max_points: path.max_points,
+        eigenvalues: path.eigenvalues,
+        ..Settings::default()
+    }
+}
+
+/// Hands the tracer's progress on.
+fn listen<'o>(
+    observer: &'o mut Observer<'_>,
+) -> impl FnMut(&continuation::Progress) -> ControlFlow<()> + 'o {
+    move |progress| {
+        observer(Progress {
+            points: progress.points,
+            events: progress.events,
+            parameter: progress.p,
+        })
+    }
+}

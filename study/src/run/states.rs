@@ -1,0 +1,76 @@
+//! The states along curves that a report shows.
+
+use crate::record::{Outline, State};
+use continuation::{Branch, Problem};
+use shell_contact::{ContactProblem, RingLoadProblem};
+
+/// Samples along the meridian from which the points of a report are chosen.
+const FINE: usize = 601;
+/// Points of a meridian in a report, and states in all, so that it stays a file to be sent about.
+const OUTLINE: usize = 110;
+const STATES: usize = 800;
+
+/// Which of the `count` points of a curve are shown, in a report of `all` points: every one, or as
+/// many as there is room for, the ends and those that are special.
+pub(super) fn shown(
+    count: usize,
+    all: usize,
+    special: impl Fn(usize) -> bool,
+) -> impl Iterator<Item = usize> {
+    let every = all.div_ceil(STATES).max(1);
+    (0..count).filter(move |at| at % every == 0 || at + 1 == count || special(*at))
+}
+
+/// A shell between plates at a height; `None` where it is not admissible.
+pub(super) fn between_plates(
+    problem: &ContactProblem,
+    point: usize,
+    u: &[f64],
+    plate: f64,
+) -> Option<State> {
+    let parameters = problem.parameters_at(plate);
+    let profile = problem.profile(u.get(..problem.dim())?, &parameters, FINE).ok()?;
+    let (sigma, z) = (profile.sigma, profile.z);
+    let outline = Outline { sigma, z, pressure: profile.disjoining_pressure };
+    Some(State { point, plate, outline: outline.thinned(OUTLINE) })
+}
+
+/// The states along a branch of the contact problem, for a report of `all` points.
+pub(super) fn of_contact(problem: &ContactProblem, branch: &Branch, all: usize) -> Vec<State> {
+    let points = &branch.points;
+    let state = |at: usize| {
+        let point = &points[at];
+        // under a device the plate's distance is the last unknown
+        let plate = point.u.get(problem.dim()).copied().unwrap_or(point.p);
+        between_plates(problem, at, &point.u, plate)
+    };
+    shown(points.len(), all, |at| points[at].event.is_some()).filter_map(state).collect()
+}
+
+/// The same of a ring-loaded shell, whose angles are in degrees: there is no film.
+pub(super) fn of_ring_load(problem: &RingLoadProblem, branch: &Branch, all: usize) -> Vec<State> {
+    let points = &branch.points;
+    let state = |at: usize| {
+        let point = &points[at];
+        let parameters = problem.parameters_at(point.p.to_radians());
+        let profile = problem.profile(&point.u, &parameters, FINE).ok()?;
+        let plate = problem.observation(&point.u, &parameters).ok()?.ring_height;
+        let (sigma, z) = (profile.sigma, profile.z);
+        let outline = Outline { sigma, z, pressure: Vec::new() };
+        Some(State { point: at, plate, outline: outline.thinned(OUTLINE) })
+    };
+    shown(points.len(), all, |at| points[at].event.is_some()).filter_map(state).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_report_has_room_for_so_many_states() {
+        assert_eq!(shown(5, 5, |_| false).count(), 5);
+        let some: Vec<usize> = shown(8, 2 * STATES, |at| at == 3).collect();
+        assert_eq!(some, [0, 2, 3, 4, 6, 7]);
+        assert_eq!(shown(0, 0, |_| false).count(), 0);
+    }
+}
