@@ -1,0 +1,34 @@
+"""Numerical continuation and bifurcation of equilibria ``f(u, p) = 0``.
+
+A problem is a residual; `Problem.trace` follows its solutions along a parameter and locates the special
+points on the way: folds, branch points, Hopf points.
+
+>>> import numpy as np, arclen
+>>> def f(u, p):                       # the Brusselator, du/dt = f
+...     x, y = u
+...     b = p[0]
+...     return [1 - (b + 1) * x + x * x * y, b * x - x * x * y]
+>>> problem = arclen.Problem(f, parameters=["B"], stability="dynamics")
+>>> branch = problem.trace("B", u0=[1, 1], p0=[1], target=3)
+>>> [(event.label, round(event.p, 9)) for event in branch.events]
+[('H', 2.0)]
+>>> branch[0].p, branch[-1].p, branch.stopped_because
+(1.0, 3.0, 'target')
+"""
+
+from ._arclen import EngineError as ArclenError
+from ._arclen import __version__
+from ._branch import Branch, Diagram, Event, Point, Solutions
+from ._problem import InterruptedWarning, Problem
+
+__all__ = [
+    "ArclenError",
+    "Branch",
+    "Diagram",
+    "Event",
+    "InterruptedWarning",
+    "Point",
+    "Problem",
+    "Solutions",
+    "__version__",
+]
