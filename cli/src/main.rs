@@ -6,9 +6,6 @@
 mod arguments;
 mod commands;
 mod exit;
-mod figures;
-mod fit;
-mod pictures;
 mod terminal;
 
 use arguments::Arguments;

@@ -2,10 +2,10 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
-use super::report::{REPORT, cycle_report};
 use crate::arguments::CycleArguments;
 use crate::exit::Exit;
-use crate::pictures;
+use pictures::{REPORT, cycle_report};
+
 use crate::terminal;
 use study::case::ResolvedCase;
 use study::record::{CycleResult, branch_csv, cycle_json, cycle_summary, cycle_table};

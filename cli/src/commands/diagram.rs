@@ -2,11 +2,11 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
-use super::report::{REPORT, report};
 use crate::arguments::DiagramArguments;
 use crate::exit::Exit;
-use crate::{pictures, terminal};
+use crate::terminal;
 use continuation::diagram::{DiagramBranch, Unfinished};
+use pictures::{REPORT, report};
 use std::path::Path;
 use study::case::ResolvedCase;
 use study::record::TraceResult;

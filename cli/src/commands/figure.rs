@@ -4,16 +4,16 @@ use super::delivery::Made;
 use super::progress::Observer;
 use crate::arguments::FigureArguments;
 use crate::exit::Exit;
-use crate::figures::{self, Computed, FigureError};
 use crate::terminal;
+use paper::{self, Computed, FigureError};
 use std::path::Path;
 
 const JSON: &str = "figures.json";
 
 /// Compute figures.
 pub(super) fn figure(arguments: &FigureArguments) -> Exit {
-    let planned = figures::numbers(&arguments.numbers)
-        .and_then(|numbers| figures::plan(&numbers, &arguments.overrides()));
+    let planned = paper::numbers(&arguments.numbers)
+        .and_then(|numbers| paper::plan(&numbers, &arguments.overrides()));
     let plan = match planned {
         Ok(plan) => plan,
         Err(error) => return refuse(&error),
@@ -34,10 +34,10 @@ pub(super) fn figure(arguments: &FigureArguments) -> Exit {
             return refuse(&error);
         }
     };
-    let mut made = Made::json(JSON, figures::json(&computed));
+    let mut made = Made::json(JSON, paper::json(&computed));
     if folder.is_some() {
         observer.say("drawing".to_owned());
-        made.files(figures::files(&computed, !arguments.output.no_pictures));
+        made.files(paper::files(&computed, !arguments.output.no_pictures));
     }
     observer.finish();
     let complete = computed.early.is_empty();
@@ -50,7 +50,7 @@ fn refuse(error: &FigureError) -> Exit {
 }
 
 fn summary(computed: &Computed, written: Option<&Path>) -> String {
-    let mut text = figures::summary(computed);
+    let mut text = paper::summary(computed);
     if let Some(path) = written {
         text += &format!("results in {}\n", path.display());
     }

@@ -3,11 +3,11 @@
 use super::delivery::Made;
 use crate::arguments::{FitArguments, SegmentsWanted, set};
 use crate::exit::Exit;
-use crate::fit::{self as drawing, Drawn, draw_fit};
 use crate::terminal;
 use identify::data::Direction;
 use identify::{LawName, Profiles};
 use indicatif::ProgressBar;
+use pictures::fit::{self as drawing, Drawn, draw_fit};
 use rayon::prelude::*;
 use serde_json::json;
 use std::collections::BTreeSet;

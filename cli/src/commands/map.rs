@@ -4,7 +4,7 @@ use super::delivery::Made;
 use super::progress::Observer;
 use crate::arguments::MapArguments;
 use crate::exit::Exit;
-use crate::pictures;
+
 use crate::terminal;
 use study::case::ResolvedCase;
 use study::record::{MapResult, branch_csv, map_json, map_summary};

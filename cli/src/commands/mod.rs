@@ -10,7 +10,6 @@ mod fit;
 mod list;
 mod map;
 mod progress;
-mod report;
 mod sweep;
 mod trace;
 

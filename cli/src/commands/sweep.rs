@@ -4,7 +4,7 @@ use super::delivery::Made;
 use super::progress::stop_on_signals;
 use crate::arguments::{MergeArguments, OutputArguments, SweepArguments};
 use crate::exit::Exit;
-use crate::{pictures, terminal};
+use crate::terminal;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io;
 use std::path::PathBuf;

@@ -2,10 +2,10 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
-use super::report::{REPORT, report};
 use crate::arguments::TraceArguments;
 use crate::exit::Exit;
-use crate::pictures;
+use pictures::{REPORT, report};
+
 use crate::terminal;
 use study::case::ResolvedCase;
 use study::record::{TraceResult, branch_csv, events_json, modes_csv, summary};

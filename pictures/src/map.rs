@@ -1,0 +1,57 @@
+//! The picture of a map: curves of special points over the second parameter.
+
+use super::chart::DrawError;
+use super::draw::{self, DISTANCE};
+use study::record::MapResult;
+use study::record::view::{Curve, Mark};
+
+/// Name of the picture.
+pub const MAP: &str = "map.svg";
+
+/// The map as SVG: the first parameter over the second, one colour for each kind of curve.
+///
+/// # Errors
+/// When the drawing library fails.
+pub fn draw_map(result: &MapResult) -> Result<String, DrawError> {
+    let mut curves: Vec<Curve> = Vec::new();
+    for curve in &result.curves {
+        match curves.iter_mut().find(|known| known.label == curve.kind) {
+            Some(known) => {
+                // a gap between curves of a kind
+                known.x.push(f64::NAN);
+                known.y.push(f64::NAN);
+                known.x.extend_from_slice(&curve.second);
+                known.y.extend_from_slice(&curve.first);
+            }
+            None => curves.push(Curve {
+                label: curve.kind.clone(),
+                x: curve.second.clone(),
+                y: curve.first.clone(),
+                ..Curve::default()
+            }),
+        }
+    }
+    if let Some(last) = curves.last_mut() {
+        last.marks = result
+            .points
+            .iter()
+            .map(|point| Mark { kind: point.kind.clone(), x: point.second, y: point.first })
+            .collect();
+    }
+    let y = match result.parameter.as_str() {
+        "z0" => DISTANCE,
+        "alpha" => "contact angle α (degrees)",
+        other => other,
+    };
+    let x = match result.key.as_str() {
+        _ if !matches!(result.parameter.as_str(), "z0" | "alpha") => &result.key,
+        "adhesion" => "adhesion w₀/χ",
+        "bending" => "bending stiffness k_b/(χR₀²)",
+        "pressure" => "ambient pressure P_A R₀/χ",
+        "film" => "film length δ_A/R₀",
+        "surface_tension" => "surface tension γ_BW/χ",
+        "moment" => "moment at the ring m/(χR₀²)",
+        other => other,
+    };
+    draw::map(&result.case, x, y, &curves)
+}

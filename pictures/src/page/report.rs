@@ -1,0 +1,284 @@
+//! `report.html`: what a command found, as a page to look at.
+
+use super::{Chart, Curve, Mark, Report, State};
+use study::record;
+use study::record::{ContactRow, CycleResult, EventRecord, Table, TraceResult};
+use study::run::RING_AXES;
+
+/// Name of the file.
+pub const REPORT: &str = "report.html";
+
+const FORCE: &str = "force F/√(χ k_b)";
+const ENERGIES: [(&str, &str); 6] = [
+    ("energy_total", "total"),
+    ("energy_stretching", "stretching"),
+    ("energy_bending", "bending"),
+    ("energy_film", "film"),
+    ("energy_gas", "gas"),
+    ("energy_surface", "surface"),
+];
+/// The column of words that are "true" or "false".
+const FLAG: &str = "admissible";
+/// Observables of other problems that have a chart each.
+const CHARTS: usize = 4;
+
+/// A curve of a page.
+struct Line<'a> {
+    label: &'a str,
+    table: &'a Table,
+    events: &'a [EventRecord],
+    states: &'a [record::State],
+    jumps: &'a [usize],
+}
+
+/// The page for branches with their names; `subtitle` is a line below the title. Branches of the
+/// contact problem are drawn as force curves; where they have states, these are shown.
+///
+/// # Errors
+/// What the writer of JSON reports; memory does not fail, so none is expected.
+pub fn report(
+    title: &str,
+    subtitle: &str,
+    branches: &[(String, &TraceResult)],
+) -> Result<String, serde_json::Error> {
+    let lines: Vec<Line<'_>> = branches
+        .iter()
+        .map(|(label, branch)| Line {
+            label,
+            table: &branch.table,
+            events: &branch.events,
+            states: &branch.pictures.states,
+            jumps: &[],
+        })
+        .collect();
+    let parameter = branches.first().map_or("", |(_, branch)| &branch.parameter);
+    let mut subtitle = subtitle.to_owned();
+    if branches.iter().any(|(_, branch)| branch.stability.is_some_and(|s| !s.full)) {
+        let separator = if subtitle.is_empty() { "" } else { "; " };
+        subtitle += separator;
+        subtitle += "stability against axisymmetric modes only";
+    }
+    page(title, &subtitle, parameter, &lines, 0)
+}
+
+/// The page for a cycle: both ways and the complete branch, of which the states are given.
+///
+/// # Errors
+/// As [`report()`].
+pub fn cycle_report(cycle: &CycleResult) -> Result<String, serde_json::Error> {
+    let ways = cycle.reported.ways.iter().map(|way| Line {
+        label: way.label,
+        table: &way.table,
+        events: &[],
+        states: &way.states,
+        jumps: &way.jumps,
+    });
+    let complete = Line {
+        label: "complete branch",
+        table: &cycle.branch,
+        events: &[],
+        states: &cycle.reported.branch,
+        jumps: &[],
+    };
+    let lines: Vec<Line<'_>> = [complete].into_iter().chain(ways).collect();
+    // the complete branch lies below the path
+    page(&cycle.case, &cycle.stopped_detail, cycle.parameter, &lines, 1)
+}
+
+fn page(
+    title: &str,
+    subtitle: &str,
+    parameter: &str,
+    lines: &[Line<'_>],
+    selected: usize,
+) -> Result<String, serde_json::Error> {
+    let kind = lines.first().map(|line| Kind::of(line.table));
+    let charts = match kind {
+        Some(Kind::Contact) => contact_charts(lines),
+        Some(Kind::RingLoad) => ring_charts(),
+        Some(Kind::Other) => general_charts(parameter, lines),
+        None => Vec::new(),
+    };
+    let bounds = if kind == Some(Kind::RingLoad) { "planes of the rings" } else { "plates" };
+    let report = Report {
+        title: title.to_owned(),
+        subtitle: subtitle.to_owned(),
+        charts,
+        curves: lines.iter().map(curve).collect(),
+        selected,
+        bounds: bounds.to_owned(),
+    };
+    report.html()
+}
+
+/// What a table tells of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Contact,
+    RingLoad,
+    Other,
+}
+
+impl Kind {
+    fn of(table: &Table) -> Self {
+        let columns = table.columns();
+        if columns.starts_with(&ContactRow::COLUMNS.map(str::to_owned)) {
+            Kind::Contact
+        } else if columns.iter().any(|name| name == "ring_height") {
+            Kind::RingLoad
+        } else {
+            Kind::Other
+        }
+    }
+}
+
+fn state(state: &record::State) -> State {
+    let record::Outline { sigma, z, pressure } = state.outline.clone();
+    State { point: state.point, plate: state.plate, sigma, z, pressure }
+}
+
+fn pair(name: &str, label: &str) -> (String, String) {
+    (name.to_owned(), label.to_owned())
+}
+
+fn chart(title: &str, x: &(String, String), y: &str, columns: Vec<(String, String)>) -> Chart {
+    Chart { title: title.to_owned(), x: x.clone(), y: y.to_owned(), columns }
+}
+
+fn force() -> Vec<(String, String)> {
+    vec![pair("force", "force")]
+}
+
+/// Force against deformation, unless the force never vanishes, against plate distance, and against
+/// the base of a cantilever; energies.
+fn contact_charts(lines: &[Line<'_>]) -> Vec<Chart> {
+    let deformation = pair("deformation", "deformation Δ/R₀");
+    let distance = pair("z0", "plate distance z₀/R₀");
+    let energies = || ENERGIES.map(|(name, label)| pair(name, label)).to_vec();
+    let known =
+        |name: &str| lines.iter().any(|l| l.table.numbers(name).iter().any(|x| x.is_finite()));
+    let mut charts = Vec::new();
+    if known("deformation") {
+        charts.push(chart("Force against deformation", &deformation, FORCE, force()));
+    }
+    charts.push(chart("Force against plate distance", &distance, FORCE, force()));
+    if known("base") {
+        let base = pair("base", "base of the cantilever/R₀");
+        charts.push(chart("Force against base", &base, FORCE, force()));
+    }
+    let x = if known("deformation") { &deformation } else { &distance };
+    charts.push(chart("Energies", x, "energy U/(χ R₀²)", energies()));
+    charts
+}
+
+/// Force against contact angle and deflection.
+fn ring_charts() -> Vec<Chart> {
+    let (angle, axis) = RING_AXES;
+    let angle = pair("alpha", angle);
+    let deflection = pair("deflection_over_h", "deflection of the ring/h");
+    vec![
+        chart("Force against contact angle", &angle, axis, force()),
+        chart("Force against deflection", &deflection, axis, force()),
+        chart("Energy", &angle, "energy U/(χ R₀²)", vec![pair("energy_total", "total")]),
+    ]
+}
+
+/// Observables against the parameter.
+fn general_charts(parameter: &str, lines: &[Line<'_>]) -> Vec<Chart> {
+    let x = pair(parameter, parameter);
+    let columns = lines.first().map_or(&[][..], |line| line.table.columns());
+    // the columns between the parameter and the number of unstable modes
+    let observables = columns.iter().skip(2).take_while(|name| *name != "unstable");
+    observables
+        .take(CHARTS)
+        .map(|name| chart(&format!("{name} against {parameter}"), &x, name, vec![pair(name, name)]))
+        .collect()
+}
+
+fn curve(line: &Line<'_>) -> Curve {
+    let table = line.table;
+    let shown = |name: &&String| {
+        let elsewhere = matches!(name.as_str(), "point" | "unstable" | "event" | "certified");
+        !elsewhere && *name != FLAG
+    };
+    let marks = table.words("event").enumerate().map(|(k, (point, kind))| {
+        let event = line.events.get(k).filter(|event| event.kind == kind);
+        // where symmetry is lost these do not change: the page takes what its neighbours have
+        let unstable = event
+            .filter(|event| event.mode.is_none())
+            .map(|event| [event.unstable_before, event.unstable_after]);
+        Mark { point, kind: kind.to_owned(), unstable }
+    });
+    let flag: Vec<bool> = table.words(FLAG).map(|(_, word)| word == "true").collect();
+    // a flag that is not known everywhere is not shown
+    let known = !flag.is_empty() && flag.len() == table.rows().len();
+    Curve {
+        label: line.label.to_owned(),
+        columns: table
+            .columns()
+            .iter()
+            .filter(shown)
+            .map(|name| (name.clone(), table.numbers(name)))
+            .collect(),
+        unstable: unstable(table),
+        marks: marks.collect(),
+        flags: known.then(|| (FLAG.to_owned(), flag)).into_iter().collect(),
+        jumps: line.jumps.to_vec(),
+        states: line.states.iter().map(state).collect(),
+    }
+}
+
+/// Unstable modes of every point, of all kinds that were counted; −1 where that is not known.
+fn unstable(table: &Table) -> Vec<i32> {
+    let mut total = table.numbers("unstable");
+    for kind in ["unstable_antisymmetric", "unstable_modes"] {
+        total.iter_mut().zip(table.numbers(kind)).for_each(|(total, n)| *total += n);
+    }
+    total.iter().map(|n| if n.is_finite() { *n as i32 } else { -1 }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ops::ControlFlow;
+    use study::case::{Override, load};
+    use study::run::run_trace;
+
+    /// A short branch.
+    fn example() -> TraceResult {
+        let keys = ["mesh.elements=40", "path.end=0.95", "stability.scan=axisymmetric"];
+        let overrides = keys.map(Override::new);
+        let case = load("fig12".as_ref(), &overrides, &[]).unwrap().case;
+        run_trace(&case, &mut |_| ControlFlow::Continue(())).unwrap()
+    }
+
+    /// The data of a page.
+    fn data(page: &str) -> serde_json::Value {
+        let start = page.find("id=\"data\">").unwrap() + 10;
+        let end = start + page[start..].find("</script>").unwrap();
+        serde_json::from_str(&page[start..end]).unwrap()
+    }
+
+    #[test]
+    fn a_contact_branch_has_its_force_curves_and_its_special_points() {
+        let result = example();
+        let data = data(&report("fig12", "why", &[("branch".to_owned(), &result)]).unwrap());
+        assert_eq!((&data["title"], &data["subtitle"]), (&"fig12".into(), &"why".into()));
+        let titles: Vec<_> =
+            data["charts"].as_array().unwrap().iter().map(|c| &c["title"]).collect();
+        assert_eq!(titles.last().unwrap().as_str(), Some("Energies"));
+        let curve = &data["curves"][0];
+        assert_eq!(curve["unstable"].as_array().unwrap().len(), result.table.rows().len());
+        for (name, values) in curve["columns"].as_object().unwrap() {
+            assert_eq!(values.as_array().unwrap().len(), result.table.rows().len(), "{name}");
+        }
+        assert_eq!((&data["selected"], &data["bounds"]), (&0.into(), &"plates".into()));
+        // what was left out is said
+        let stability = study::record::StabilityRecord::default();
+        let result = TraceResult { stability: Some(stability), ..result };
+        let other = report("fig12", "why", &[("branch".to_owned(), &result)]).unwrap();
+        assert!(other.contains("why; stability against axisymmetric modes only"));
+        let kinds = result.table.rows().iter().filter(|row| row[15] != study::record::Cell::Empty);
+        assert_eq!(curve["marks"].as_array().unwrap().len(), kinds.count());
+    }
+}
