@@ -246,7 +246,7 @@ mod tests {
 
     /// A short branch.
     fn example() -> TraceResult {
-        let keys = ["mesh.elements=40", "path.end=0.95", "stability.scan=axisymmetric"];
+        let keys = ["mesh.elements=40", "path.end=0.85", "stability.scan=axisymmetric"];
         let overrides = keys.map(Override::new);
         let case = load("fig12".as_ref(), &overrides, &[]).unwrap().case;
         run_trace(&case, &mut |_| ControlFlow::Continue(())).unwrap()
