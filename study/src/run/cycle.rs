@@ -6,9 +6,7 @@ use super::contact::{
 use super::stability::Stability as Scanned;
 use super::two_plates::{self, BetweenPlates, WithPlates};
 use super::{Observer, RunError, listen, ways};
-use crate::case::{
-    ContactCase, DeviceCase, ProblemCase, ResolvedCase, StabilityCase, TwoPlatesCase,
-};
+use crate::case::{ContactCase, DeviceCase, ResolvedCase, StabilityCase, TwoPlatesCase};
 use crate::record::view::{Curve, CyclePictures, Examined, Mark, Shape};
 use crate::record::{
     CycleResult, FoldRecord, JumpRecord, MaxwellRecord, PathModes, PathRow, ReportedCycle,
@@ -24,33 +22,8 @@ use shell_contact::two_plates::stable_start;
 use shell_contact::{ContactBranch, Device, LoadedProblem, force_watches};
 use std::time::Instant;
 
-/// Travel a case to and fro; `reported` also takes the states on the way, for a report.
-///
-/// # Errors
-/// When there is no result at all; a cycle that ends early is a result.
-pub fn run_cycle(
-    case: &ResolvedCase,
-    reported: bool,
-    observer: &mut Observer<'_>,
-) -> Result<CycleResult, RunError> {
-    let name = case.name.clone();
-    match &case.problem {
-        ProblemCase::Contact(contact) => half(case, contact, reported, observer),
-        ProblemCase::TwoPlates(plates) => {
-            let travel = Travel { case, plates, reported, observer };
-            two_plates::visit(case, plates, travel)?
-        }
-        ProblemCase::RingLoad(_) => {
-            Err(RunError::NoPlates { case: name, problem: "ring-load".to_owned() })
-        }
-        ProblemCase::Catalogue(problem) => {
-            Err(RunError::NoPlates { case: name, problem: problem.name.clone() })
-        }
-    }
-}
-
 /// A cycle of mirror images.
-fn half(
+pub(super) fn half(
     case: &ResolvedCase,
     contact: &ContactCase,
     reported: bool,
@@ -111,11 +84,11 @@ fn half(
 }
 
 /// A cycle from pole to pole.
-struct Travel<'t, 'o> {
-    case: &'t ResolvedCase,
-    plates: &'t TwoPlatesCase,
-    reported: bool,
-    observer: &'t mut Observer<'o>,
+pub(super) struct Travel<'t, 'o> {
+    pub(super) case: &'t ResolvedCase,
+    pub(super) plates: &'t TwoPlatesCase,
+    pub(super) reported: bool,
+    pub(super) observer: &'t mut Observer<'o>,
 }
 
 impl WithPlates for Travel<'_, '_> {

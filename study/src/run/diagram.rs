@@ -1,18 +1,18 @@
 //! Whole diagrams, of every kind of problem.
 
+use super::asymmetric;
 use super::stability::Stability;
 use super::two_plates::{BetweenPlates, WithPlates};
-use super::{RunError, asymmetric, contact, general, ring_load, states, two_plates};
-use crate::case::{ProblemCase, ResolvedCase, StabilityCase};
+use crate::case::ResolvedCase;
 use crate::record::view::{Curve, Mark};
-use crate::record::{BranchRecord, DiagramResult, From, NearRecord, Symmetry, TraceResult};
+use crate::record::{BranchRecord, DiagramResult, From, NearRecord, TraceResult};
 use continuation::diagram::{
     Diagram, DiagramBranch, DiagramError, DiagramSettings, DiagramStop, Explorer, Origin, Search,
     Unfinished,
 };
 use continuation::{Branch, NearKind, Problem, Settings, StopReason};
 use problems::{Setup, Visitor};
-use shell_contact::{ContactBranch, force_watches};
+use shell_contact::force_watches;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -65,8 +65,9 @@ impl Keep for KeepNothing {
     fn unfinished(&mut self, _: usize, _: &Unfinished, _: f64) {}
 }
 
-struct Exploration<'e, 'o> {
-    settings: DiagramSettings,
+/// A diagram that is about to be explored.
+pub(super) struct Exploration<'e, 'o> {
+    pub(super) settings: DiagramSettings,
     saved: Saved,
     keep: &'e mut dyn Keep,
     observer: &'e mut DiagramObserver<'o>,
@@ -74,7 +75,11 @@ struct Exploration<'e, 'o> {
 }
 
 impl Exploration<'_, '_> {
-    fn run<P: Problem>(self, problem: &P, setup: &Setup) -> Result<(Diagram, f64), DiagramError> {
+    pub(super) fn run<P: Problem>(
+        self,
+        problem: &P,
+        setup: &Setup,
+    ) -> Result<(Diagram, f64), DiagramError> {
         let Exploration { settings, saved, keep, observer, clock } = self;
         let (name, u, p) = (setup.parameter, &setup.u, &setup.p);
         let explorer = Explorer::new(problem, name, u, p, settings, &setup.watches)?;
@@ -139,20 +144,32 @@ impl WithPlates for Exploration<'_, '_> {
     }
 }
 
-/// Explore the diagram of a case, from what was kept of it; `reported` also takes the states along
-/// the branches, for a report.
-///
-/// # Errors
-/// When there is no result at all, or what was kept is of another diagram.
-pub fn run_diagram(
-    case: &ResolvedCase,
-    reported: bool,
+/// How a diagram is computed.
+pub(super) struct Work<'e> {
+    /// What was computed of it before.
     saved: Saved,
-    keep: &mut dyn Keep,
-    observer: &mut DiagramObserver<'_>,
-) -> Result<DiagramResult, RunError> {
-    let clock = Instant::now();
-    let explore = |trace: Settings, keep, observer| {
+    keep: &'e mut dyn Keep,
+    /// Whether the states along the branches are wanted, for a report.
+    pub(super) reported: bool,
+    clock: Instant,
+}
+
+impl<'e> Work<'e> {
+    /// Work that begins now.
+    pub(super) fn new(saved: Saved, keep: &'e mut dyn Keep, reported: bool) -> Self {
+        Work { saved, keep, reported, clock: Instant::now() }
+    }
+
+    /// The exploration of a case whose branches are traced with these settings.
+    pub(super) fn explore<'w, 'o>(
+        self,
+        case: &ResolvedCase,
+        trace: Settings,
+        observer: &'w mut DiagramObserver<'o>,
+    ) -> Exploration<'w, 'o>
+    where
+        'e: 'w,
+    {
         let within = case.diagram.within;
         let target = trace.target.filter(|_| within.is_none());
         let settings = DiagramSettings {
@@ -161,177 +178,13 @@ pub fn run_diagram(
             max_branches: case.diagram.max_branches,
             search: case.diagram.search.then(Search::default),
         };
+        let Work { saved, keep, clock, .. } = self;
         Exploration { settings, saved, keep, observer, clock }
-    };
-    match &case.problem {
-        ProblemCase::Contact(contact) => {
-            let problem = contact::problem(case, contact)?;
-            let start = case.path.start;
-            let setup = Setup {
-                parameter: "z0",
-                u: problem.initial_state(),
-                p: problem.parameters_at(start).to_vec(),
-                settings: Settings::default(),
-                watches: force_watches().to_vec(),
-            };
-            let explored = explore(contact::path(case), keep, &mut *observer).run(&problem, &setup);
-            let (diagram, seconds) = explored.map_err(|error| match error {
-                DiagramError::Trace(detail) => contact::no_start(case, detail),
-                error => RunError::Diagram { case: case.name.clone(), error },
-            })?;
-            let scanning = Instant::now();
-            let mut zero = None;
-            let points = diagram.branches.iter().map(|one| one.branch.points.len()).sum();
-            let mut waiting = diagram.branches.len();
-            let done = diagram.branches.len();
-            let depths: Vec<usize> = diagram.branches.iter().map(|one| one.depth).collect();
-            let mut symmetric = asymmetric::Symmetric::default();
-            let mut waves = 0;
-            let axes = ("plate distance z₀/R₀", "force F/√(χ k_b)");
-            let mut explored = result(case, diagram, seconds, axes, &mut |branch| {
-                let mut traced = ContactBranch::new(branch, zero);
-                zero = traced.zero_force;
-                waiting -= 1;
-                let scan = &mut |branch| {
-                    observer(DiagramProgress { branches: done - waiting, waiting, branch })
-                };
-                let stability = Stability::of(case, &problem, &mut traced, scan);
-                let id = done - 1 - waiting;
-                let forks = stability.forks(&traced.branch);
-                symmetric.add(id, depths[id], &traced.branch, &forks);
-                waves += stability.waves();
-                let (mut trace, curve) = contact::on_diagram(case, &problem, &traced, &stability);
-                if reported {
-                    trace.pictures.states = states::of_contact(&problem, &traced.branch, points);
-                }
-                Presented { trace, curve, stability }
-            });
-            if !explored.branches.is_empty() && explored.stopped_because != "interrupted" {
-                for one in &mut explored.branches {
-                    one.symmetry = Some(Symmetry::Mirror);
-                }
-                match case.stability {
-                    StabilityCase::Full { .. } => {
-                        let found = asymmetric::follow(case, contact, zero, symmetric, observer)?;
-                        with_asymmetric(&mut explored, found, waves);
-                    }
-                    StabilityCase::Axisymmetric => {
-                        explored.stopped_detail += NOT_EXAMINED;
-                    }
-                }
-            }
-            let seconds = explored.seconds + scanning.elapsed().as_secs_f64();
-            Ok(DiagramResult { seconds, ..explored })
-        }
-        ProblemCase::TwoPlates(plates) => {
-            let name = plates.parameter();
-            let exploration = explore(two_plates::settings(case, name), keep, &mut *observer);
-            let explored = two_plates::visit(case, plates, exploration)?;
-            let (diagram, seconds) = explored.map_err(|error| match error {
-                DiagramError::Trace(detail) => contact::no_start(case, detail),
-                error => RunError::Diagram { case: case.name.clone(), error },
-            })?;
-            let scanning = Instant::now();
-            let mut explored = two_plates::visit(
-                case,
-                plates,
-                OfTwoPlates { case, diagram, seconds, name, observer },
-            )?;
-            explored.seconds += scanning.elapsed().as_secs_f64();
-            Ok(explored)
-        }
-        ProblemCase::RingLoad(ring) => {
-            let ring_load::Start { problem, u, p } = ring_load::start(case, ring)?;
-            let setup = Setup {
-                parameter: "alpha",
-                u,
-                p,
-                settings: Settings::default(),
-                watches: ring_load::watches(),
-            };
-            let mut in_degrees = |at: DiagramProgress| {
-                let parameter = at.branch.parameter.to_degrees();
-                observer(DiagramProgress {
-                    branch: super::Progress { parameter, ..at.branch },
-                    ..at
-                })
-            };
-            let mut exploration = explore(ring_load::path(&case.path), keep, &mut in_degrees);
-            let domain = &mut exploration.settings.trace.domain;
-            *domain = domain.map(|(low, high)| (low.to_radians(), high.to_radians()));
-            let explored = exploration.run(&problem, &setup);
-            let (diagram, seconds) = explored.map_err(|error| match error {
-                DiagramError::Trace(detail) => ring_load::no_start(case, detail),
-                error => RunError::Diagram { case: case.name.clone(), error },
-            })?;
-            let diagram = ring_load::diagram_in_degrees(diagram);
-            let points = diagram.branches.iter().map(|one| one.branch.points.len()).sum();
-            Ok(result(case, diagram, seconds, ring_load::AXES, &mut |branch| {
-                let curve = ring_load::curve(&branch);
-                let mut result = ring_load::result(case, &branch, 0.0);
-                if reported {
-                    result.pictures.states = states::of_ring_load(&problem, &branch, points);
-                }
-                Presented { trace: result, curve, stability: Stability::default() }
-            }))
-        }
-        ProblemCase::Catalogue(problem) => {
-            let (entry, request) = general::request(case, problem)?;
-            let explored = entry
-                .visit(&request, explore(request.settings.clone(), keep, observer))
-                .map_err(|error| general::refused(case, error))?;
-            let (diagram, seconds) = explored.map_err(|error| match error {
-                DiagramError::Trace(detail) => general::no_start(case, detail),
-                error => RunError::Diagram { case: case.name.clone(), error },
-            })?;
-            let shown = diagram.branches.first().and_then(|one| one.branch.observables.first());
-            let shown = shown.cloned().unwrap_or_default();
-            let axes = (entry.parameter, &shown[..]);
-            Ok(result(case, diagram, seconds, axes, &mut |branch| {
-                let curve = curve(&branch, &shown);
-                let trace = general::result(case, &branch, 0.0);
-                Presented { trace, curve, stability: Stability::default() }
-            }))
-        }
-    }
-}
-
-/// The branches of a diagram between two plates, as plain numbers with their modes.
-struct OfTwoPlates<'o, 'c> {
-    case: &'c ResolvedCase,
-    diagram: Diagram,
-    seconds: f64,
-    name: &'static str,
-    observer: &'o mut DiagramObserver<'c>,
-}
-
-impl WithPlates for OfTwoPlates<'_, '_> {
-    type Output = DiagramResult;
-
-    fn with<P: BetweenPlates>(self, problem: &P, _: &[f64], _: &[f64]) -> DiagramResult {
-        let OfTwoPlates { case, diagram, seconds, name, observer } = self;
-        let x = if name == "z0" { "half the plate distance z₀/R₀" } else { name };
-        let (mut zero, mut waves, mut done) = (None, 0, 0);
-        let mut waiting = diagram.branches.len();
-        let axes = (x, "force F/√(χ k_b)");
-        let mut explored = result(case, diagram, seconds, axes, &mut |branch| {
-            let mut traced = ContactBranch::new(branch, zero);
-            zero = traced.zero_force;
-            (done, waiting) = (done + 1, waiting - 1);
-            let stability = Stability::of_whole(case, problem, &mut traced, &mut |branch| {
-                observer(DiagramProgress { branches: done, waiting, branch })
-            });
-            waves += stability.waves() + stability.missed();
-            let (trace, curve) = two_plates::on_diagram(case, &traced, &stability);
-            Presented { trace, curve, stability }
-        });
-        with_asymmetric(&mut explored, asymmetric::Asymmetric::default(), waves);
-        explored
     }
 }
 
 /// An observable over the parameter.
-fn curve(branch: &Branch, observable: &str) -> Curve {
+pub(super) fn curve(branch: &Branch, observable: &str) -> Curve {
     let k = branch.observables.iter().position(|name| name == observable);
     let value = |at: usize| k.map_or(f64::NAN, |k| branch.points[at].observables[k]);
     let points = &branch.points;
@@ -350,15 +203,15 @@ fn curve(branch: &Branch, observable: &str) -> Curve {
 }
 
 /// A branch as plain numbers.
-struct Presented {
-    trace: TraceResult,
-    curve: Curve,
+pub(super) struct Presented {
+    pub(super) trace: TraceResult,
+    pub(super) curve: Curve,
     /// Knows the new numbers of special points, if there are more of them now.
-    stability: Stability,
+    pub(super) stability: Stability,
 }
 
 /// A diagram as plain numbers.
-fn result(
+pub(super) fn result(
     case: &ResolvedCase,
     diagram: Diagram,
     seconds: f64,
@@ -427,12 +280,16 @@ fn result(
 }
 
 /// What `scan = "axisymmetric"` leaves out.
-const NOT_EXAMINED: &str = "; modes without the symmetries of a branch were not examined, and no branch \
+pub(super) const NOT_EXAMINED: &str = "; modes without the symmetries of a branch were not examined, and no branch \
                             without mirror symmetry was followed";
 
 /// Adds the branches without mirror symmetry, and says what is known and not followed: `waves` special
 /// points lead to states that are not axisymmetric.
-fn with_asymmetric(diagram: &mut DiagramResult, found: asymmetric::Asymmetric, waves: usize) {
+pub(super) fn with_asymmetric(
+    diagram: &mut DiagramResult,
+    found: asymmetric::Asymmetric,
+    waves: usize,
+) {
     let waves = waves + found.waves;
     let points = |n: usize| if n == 1 { "one point".to_owned() } else { format!("{n} points") };
     let mut detail = String::new();

@@ -4,6 +4,7 @@ mod asymmetric;
 mod contact;
 mod cycle;
 mod diagram;
+mod family;
 mod form;
 mod general;
 mod map;
@@ -16,17 +17,18 @@ mod two_plates;
 mod ways;
 
 pub use contact::{branch as contact_branch, result as contact_result};
-pub use cycle::run_cycle;
-pub use map::{MapError, run_map};
+pub use map::MapError;
 pub use ring_load::AXES as RING_AXES;
 pub use sweep::{Outcome, run_sweep};
 
-use crate::case::{PathCase, ProblemCase, ResolvedCase};
-use crate::record::TraceResult;
+use crate::case::{PathCase, ResolvedCase};
+use crate::record::{CycleResult, DiagramResult, MapResult, TraceResult};
 use continuation::{Settings, TraceError};
+use diagram::Work;
+use family::Wanted;
 use std::ops::ControlFlow;
 
-pub use diagram::{DiagramObserver, DiagramProgress, Keep, KeepNothing, Saved, run_diagram};
+pub use diagram::{DiagramObserver, DiagramProgress, Keep, KeepNothing, Saved};
 
 /// How far a trace has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,7 +93,7 @@ pub enum RunError {
     /// A device where only a grip can be.
     #[error(
         "{case}: device.kind = \"{device}\": only trace and cycle know devices; leave out the table \
-         [device], or say --set device.kind=grip"
+         [device]"
     )]
     Device {
         /// Name of the case.
@@ -99,16 +101,16 @@ pub enum RunError {
         /// The device.
         device: &'static str,
     },
-    /// A command that sees mirror-symmetric states only.
+    /// A run that sees mirror-symmetric states only.
     #[error(
-        "{case}: problem \"two-plates\": {command} knows mirror-symmetric states only: \
+        "{case}: problem \"two-plates\": {run} knows mirror-symmetric states only: \
          problem = \"contact\", with adhesion and film in [dimensionless]"
     )]
     MirrorOnly {
         /// Name of the case.
         case: String,
         /// What was asked for.
-        command: &'static str,
+        run: &'static str,
     },
     /// A problem without plates.
     #[error("{case}: problem \"{problem}\": a cycle needs plates: problem = \"contact\"")]
@@ -151,12 +153,7 @@ pub fn run_trace(
     case: &ResolvedCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
-    match &case.problem {
-        ProblemCase::Contact(contact) => contact::run(case, contact, observer),
-        ProblemCase::TwoPlates(plates) => two_plates::run(case, plates, observer),
-        ProblemCase::RingLoad(ring) => ring_load::run(case, ring, false, observer),
-        ProblemCase::Catalogue(problem) => general::run(case, problem, observer),
-    }
+    family::of(&case.problem).trace(case, Wanted::Pictures, observer)
 }
 
 /// The same with the states along the branch, for a report.
@@ -167,19 +164,53 @@ pub fn run_trace_reported(
     case: &ResolvedCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
-    match &case.problem {
-        ProblemCase::Contact(contact) => contact::run_reported(case, contact, observer),
-        ProblemCase::RingLoad(ring) => ring_load::run(case, ring, true, observer),
-        ProblemCase::TwoPlates(_) | ProblemCase::Catalogue(_) => run_trace(case, observer),
-    }
+    family::of(&case.problem).trace(case, Wanted::States, observer)
 }
 
-/// The same without what pictures show, for cases of which there are many.
-fn run_plain(case: &ResolvedCase, observer: &mut Observer<'_>) -> Result<TraceResult, RunError> {
-    match &case.problem {
-        ProblemCase::Contact(contact) => contact::run_plain(case, contact, observer),
-        _ => run_trace(case, observer),
-    }
+/// Explore the diagram of a case, from what was kept of it; `reported` also takes the states along
+/// the branches, for a report.
+///
+/// # Errors
+/// When there is no result at all, or what was kept is of another diagram.
+pub fn run_diagram(
+    case: &ResolvedCase,
+    reported: bool,
+    saved: Saved,
+    keep: &mut dyn Keep,
+    observer: &mut DiagramObserver<'_>,
+) -> Result<DiagramResult, RunError> {
+    family::of(&case.problem).diagram(case, Work::new(saved, keep, reported), observer)
+}
+
+/// Close and open the plates of a case once; `reported` also takes the states along both ways, for a
+/// report.
+///
+/// # Errors
+/// When there is no result at all; a cycle that ends early is a result.
+pub fn run_cycle(
+    case: &ResolvedCase,
+    reported: bool,
+    observer: &mut Observer<'_>,
+) -> Result<CycleResult, RunError> {
+    family::of(&case.problem).cycle(case, reported, observer)
+}
+
+/// Map a case over `key`. The observer hears of every point and may stop the work; what was
+/// computed until then is kept.
+///
+/// # Errors
+/// When there is no result at all.
+pub fn run_map(
+    case: &ResolvedCase,
+    key: &str,
+    observer: &mut Observer<'_>,
+) -> Result<MapResult, MapError> {
+    let family = family::of(&case.problem);
+    let second = family.second_parameter(case, key)?;
+    let attempts = |task: &map::Task<'_>, at: f64, observer: &mut Observer<'_>| {
+        family.attempt(task, at, observer)
+    };
+    map::map(case, second, &attempts, observer)
 }
 
 /// The tracer's settings for a path.

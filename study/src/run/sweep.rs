@@ -1,7 +1,7 @@
 //! The cases of a sweep on several threads.
 
-use super::run_plain;
-use crate::case::{ProblemCase, ResolvedCase};
+use super::family::{self, Wanted};
+use crate::case::ResolvedCase;
 use crate::record::phase::classify;
 use crate::record::{CaseRecord, Status, Table, TraceResult, events_table};
 use crate::sweep::SweepCase;
@@ -57,10 +57,12 @@ fn outcome(case: &SweepCase, stop: &AtomicBool) -> Option<Outcome> {
         Ok(resolved) => resolved,
         Err(reason) => return failed(reason.clone()),
     };
-    let traced = run_plain(resolved, &mut |_| match stop.load(Ordering::Relaxed) {
-        true => ControlFlow::Break(()),
-        false => ControlFlow::Continue(()),
-    });
+    let family = family::of(&resolved.problem);
+    let traced =
+        family.trace(resolved, Wanted::Nothing, &mut |_| match stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        });
     match traced {
         Ok(result) if result.stopped_because == StopReason::Interrupted => None,
         Ok(result) => Some(present(case.index, resolved, result)),
@@ -71,12 +73,8 @@ fn outcome(case: &SweepCase, stop: &AtomicBool) -> Option<Outcome> {
 fn present(index: usize, case: &ResolvedCase, result: TraceResult) -> Outcome {
     let complete = result.stopped_because.is_complete();
     let folds = result.events.iter().filter(|event| event.kind == "fold").count();
-    let phase = match &case.problem {
-        ProblemCase::Contact(contact) => {
-            Some(classify(&result.table, folds, contact.groups.film, complete))
-        }
-        _ => None,
-    };
+    let film = family::of(&case.problem).film();
+    let phase = film.map(|film| classify(&result.table, folds, film, complete));
     let record = CaseRecord {
         case: index,
         status: if complete { Status::Finished } else { Status::StoppedEarly },

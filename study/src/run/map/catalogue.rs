@@ -9,7 +9,7 @@ use continuation::{Branch, Problem, TraceError, Tracer};
 use problems::{Entry, Request, Setup, Visitor};
 
 /// The value of a parameter in the case, and its plain name.
-pub(super) fn value(problem: &CatalogueCase, key: &str) -> Result<(f64, String), MapError> {
+pub(in crate::run) fn value(problem: &CatalogueCase, key: &str) -> Result<(f64, String), MapError> {
     let name = key.strip_prefix("parameters.").unwrap_or(key);
     let allowed: Vec<String> = problem.parameters.keys().cloned().collect();
     if let Some(value) = problem.parameters.get(name) {
@@ -75,7 +75,7 @@ impl Visitor for Map<'_, '_, '_> {
 }
 
 /// The base branch with the second parameter `at` a value, and its curves.
-pub(super) fn attempt(
+pub(in crate::run) fn attempt(
     task: &Task<'_>,
     problem: &CatalogueCase,
     at: f64,

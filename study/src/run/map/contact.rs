@@ -23,7 +23,7 @@ fn group<'g>(groups: &'g mut Groups, key: &str) -> Option<&'g mut f64> {
 }
 
 /// The value of a group in the case, and its plain name.
-pub(super) fn value(contact: &ContactCase, key: &str) -> Result<(f64, String), MapError> {
+pub(in crate::run) fn value(contact: &ContactCase, key: &str) -> Result<(f64, String), MapError> {
     let name = key.strip_prefix("dimensionless.").unwrap_or(key);
     if let Some(value) = group(&mut contact.groups.clone(), name) {
         return Ok((*value, name.to_string()));
@@ -38,7 +38,7 @@ pub(super) fn value(contact: &ContactCase, key: &str) -> Result<(f64, String), M
 }
 
 /// The base branch with the second parameter `at` a value, and its curves.
-pub(super) fn attempt(
+pub(in crate::run) fn attempt(
     task: &Task<'_>,
     contact: &ContactCase,
     at: f64,

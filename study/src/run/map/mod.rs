@@ -4,14 +4,14 @@
 //! point on it starts a curve, unless a curve that is known already passes through it. Without any
 //! fold or Hopf point there, `KEY` is searched over its range, coarsely first.
 
-mod catalogue;
-mod contact;
+pub(super) mod catalogue;
+pub(super) mod contact;
 mod curves;
 mod range;
-mod ring_load;
+pub(super) mod ring_load;
 
 use super::{Observer, RunError};
-use crate::case::{ProblemCase, ResolvedCase};
+use crate::case::ResolvedCase;
 use crate::record::{MapCurve, MapPoint, MapResult};
 use continuation::{Stop, StopReason};
 use curves::Found;
@@ -28,7 +28,7 @@ pub enum MapError {
     #[error(transparent)]
     Run(#[from] RunError),
     /// No parameter of that name can vary.
-    #[error("--over {key}: {problem} has no such parameter{}; allowed here: {}",
+    #[error("{key}: {problem} has no such parameter{}; allowed here: {}",
         .suggestion.as_ref().map(|s| format!(" (did you mean {s}?)")).unwrap_or_default(),
         .allowed.join(", "))]
     UnknownKey {
@@ -42,9 +42,7 @@ pub enum MapError {
         suggestion: Option<String>,
     },
     /// The problem has one parameter only.
-    #[error(
-        "--over {key}: {problem} has no parameter besides {parameter}, so there is no map of it"
-    )]
+    #[error("{key}: {problem} has no parameter besides {parameter}, so there is no map of it")]
     OneParameter {
         /// What was asked for.
         key: String,
@@ -54,7 +52,7 @@ pub enum MapError {
         parameter: String,
     },
     /// The parameter of the branch itself.
-    #[error("--over {key}: {key} is the parameter of the branch; allowed here: {}", .allowed.join(", "))]
+    #[error("{key}: {key} is the parameter of the branch; allowed here: {}", .allowed.join(", "))]
     SameParameter {
         /// It.
         key: String,
@@ -96,8 +94,8 @@ pub enum MapError {
 }
 
 /// What is asked for, checked.
-struct Task<'a> {
-    case: &'a ResolvedCase,
+pub(super) struct Task<'a> {
+    pub(super) case: &'a ResolvedCase,
     /// The second parameter, its value in the case and its range.
     key: String,
     value: f64,
@@ -105,7 +103,7 @@ struct Task<'a> {
 }
 
 /// One base branch and the curves that begin on it.
-struct Attempt {
+pub(super) struct Attempt {
     parameter: String,
     stopped: Stop,
     newton_iterations: usize,
@@ -113,40 +111,31 @@ struct Attempt {
     refused: Vec<String>,
 }
 
-/// The refusal of a case from pole to pole.
-fn mirror_only(case: &ResolvedCase) -> MapError {
-    RunError::MirrorOnly { case: case.name.clone(), command: "arclen map" }.into()
+/// A second parameter: its plain name, its value in the case, and a size that it usually has where
+/// that value is zero.
+pub(super) struct Second {
+    pub(super) key: String,
+    pub(super) value: f64,
+    pub(super) usual: Option<f64>,
 }
 
-/// Map a case over `key`. The observer hears of every point and may stop the work; what was
-/// computed until then is kept.
-///
-/// # Errors
-/// When there is no result at all.
-pub fn run_map(
+/// The base branch with the second parameter at a value, and its curves.
+pub(super) type Attempts<'a> =
+    dyn Fn(&Task<'_>, f64, &mut Observer<'_>) -> Result<Attempt, MapError> + 'a;
+
+/// Maps a case: curves from the special points of its base branch, or, if there are none, of the first
+/// branch that has any in a search over the range.
+pub(super) fn map(
     case: &ResolvedCase,
-    key: &str,
+    second: Second,
+    attempts: &Attempts<'_>,
     observer: &mut Observer<'_>,
 ) -> Result<MapResult, MapError> {
     let clock = Instant::now();
-    let mut usual = None;
-    let (value, key) = match &case.problem {
-        ProblemCase::Contact(contact) => contact::value(contact, key)?,
-        ProblemCase::TwoPlates(_) => return Err(mirror_only(case)),
-        ProblemCase::Catalogue(problem) => catalogue::value(problem, key)?,
-        ProblemCase::RingLoad(ring) => {
-            usual = (key == ring_load::MOMENT).then_some(ring_load::USUAL_MOMENT * ring.bending);
-            ring_load::value(ring, key)?
-        }
-    };
+    let Second { key, value, usual } = second;
     let range = range::bounds(&key, value, usual, case.map)?;
     let task = Task { case, key, value, range };
-    let attempt = |at: f64, observer: &mut Observer<'_>| match &case.problem {
-        ProblemCase::Contact(contact) => contact::attempt(&task, contact, at, observer),
-        ProblemCase::TwoPlates(_) => Err(mirror_only(case)),
-        ProblemCase::Catalogue(problem) => catalogue::attempt(&task, problem, at, observer),
-        ProblemCase::RingLoad(ring) => ring_load::attempt(&task, ring, at, observer),
-    };
+    let attempt = |at: f64, observer: &mut Observer<'_>| attempts(&task, at, observer);
     let mut best = attempt(value, observer)?;
     let (mut at, mut spent) = (value, best.newton_iterations);
     let interrupted = |a: &Attempt| a.stopped.reason == StopReason::Interrupted;

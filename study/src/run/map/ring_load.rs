@@ -8,14 +8,14 @@ use crate::run::ring_load::{Start, degrees_heard, no_start, path, start, watches
 use crate::run::{Observer, listen};
 use continuation::Tracer;
 
-pub(super) const MOMENT: &str = "moment";
+pub(in crate::run) const MOMENT: &str = "moment";
 /// Range of the moment about zero, in units of the bending stiffness.
-pub(super) const USUAL_MOMENT: f64 = 0.5;
+pub(in crate::run) const USUAL_MOMENT: f64 = 0.5;
 /// What can vary besides the angle.
 const KEYS: [&str; 3] = [MOMENT, "bending", "pressure"];
 
 /// The value of a parameter in the case, and its plain name.
-pub(super) fn value(ring: &RingLoadCase, key: &str) -> Result<(f64, String), MapError> {
+pub(in crate::run) fn value(ring: &RingLoadCase, key: &str) -> Result<(f64, String), MapError> {
     let name = key.strip_prefix("dimensionless.").unwrap_or(key);
     let value = match name {
         MOMENT => 0.0,
@@ -35,7 +35,7 @@ pub(super) fn value(ring: &RingLoadCase, key: &str) -> Result<(f64, String), Map
 }
 
 /// The base branch with the second parameter `at` a value, and its curves.
-pub(super) fn attempt(
+pub(in crate::run) fn attempt(
     task: &Task<'_>,
     ring: &RingLoadCase,
     at: f64,

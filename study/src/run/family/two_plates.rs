@@ -1,0 +1,107 @@
+//! The shell from pole to pole between plates of their own.
+
+use super::{Family, Wanted};
+use crate::case::{ResolvedCase, TwoPlatesCase};
+use crate::record::{CycleResult, DiagramResult, TraceResult};
+use crate::run::diagram::{
+    DiagramObserver, DiagramProgress, Presented, Work, result, with_asymmetric,
+};
+use crate::run::map::{Attempt, MapError, Second, Task};
+use crate::run::stability::Stability;
+use crate::run::two_plates::{BetweenPlates, WithPlates};
+use crate::run::{Observer, RunError, asymmetric, contact, cycle, two_plates};
+use continuation::diagram::{Diagram, DiagramError};
+use shell_contact::ContactBranch;
+use std::time::Instant;
+
+impl Family for TwoPlatesCase {
+    fn name(&self) -> &str {
+        "two-plates"
+    }
+
+    fn trace(
+        &self,
+        case: &ResolvedCase,
+        _: Wanted,
+        observer: &mut Observer<'_>,
+    ) -> Result<TraceResult, RunError> {
+        two_plates::run(case, self, observer)
+    }
+
+    fn diagram(
+        &self,
+        case: &ResolvedCase,
+        work: Work<'_>,
+        observer: &mut DiagramObserver<'_>,
+    ) -> Result<DiagramResult, RunError> {
+        let name = self.parameter();
+        let exploration = work.explore(case, two_plates::settings(case, name), &mut *observer);
+        let explored = two_plates::visit(case, self, exploration)?;
+        let (diagram, seconds) = explored.map_err(|error| match error {
+            DiagramError::Trace(detail) => contact::no_start(case, detail),
+            error => RunError::Diagram { case: case.name.clone(), error },
+        })?;
+        let scanning = Instant::now();
+        let mut explored =
+            two_plates::visit(case, self, OfTwoPlates { case, diagram, seconds, name, observer })?;
+        explored.seconds += scanning.elapsed().as_secs_f64();
+        Ok(explored)
+    }
+
+    fn cycle(
+        &self,
+        case: &ResolvedCase,
+        reported: bool,
+        observer: &mut Observer<'_>,
+    ) -> Result<CycleResult, RunError> {
+        let travel = cycle::Travel { case, plates: self, reported, observer };
+        two_plates::visit(case, self, travel)?
+    }
+
+    fn second_parameter(&self, case: &ResolvedCase, _: &str) -> Result<Second, MapError> {
+        Err(mirror_only(case))
+    }
+
+    fn attempt(&self, task: &Task<'_>, _: f64, _: &mut Observer<'_>) -> Result<Attempt, MapError> {
+        Err(mirror_only(task.case))
+    }
+}
+
+/// The refusal of a case from pole to pole.
+fn mirror_only(case: &ResolvedCase) -> MapError {
+    RunError::MirrorOnly { case: case.name.clone(), run: "a map" }.into()
+}
+
+/// The branches of a diagram between two plates, as plain numbers with their modes.
+struct OfTwoPlates<'o, 'c> {
+    case: &'c ResolvedCase,
+    diagram: Diagram,
+    seconds: f64,
+    name: &'static str,
+    observer: &'o mut DiagramObserver<'c>,
+}
+
+impl WithPlates for OfTwoPlates<'_, '_> {
+    type Output = DiagramResult;
+
+    fn with<P: BetweenPlates>(self, problem: &P, _: &[f64], _: &[f64]) -> DiagramResult {
+        let OfTwoPlates { case, diagram, seconds, name, observer } = self;
+        let x = if name == "z0" { "half the plate distance z₀/R₀" } else { name };
+        let (mut zero, mut waves, mut done) = (None, 0, 0);
+        let mut waiting = diagram.branches.len();
+        let axes = (x, "force F/√(χ k_b)");
+        let mut explored = result(case, diagram, seconds, axes, &mut |branch| {
+            let mut traced = ContactBranch::new(branch, zero);
+            zero = traced.zero_force;
+            (done, waiting) = (done + 1, waiting - 1);
+            let stability = Stability::of_whole(case, problem, &mut traced, &mut |branch| {
+                observer(DiagramProgress { branches: done, waiting, branch })
+            });
+            waves += stability.waves() + stability.missed();
+            let (trace, curve) = two_plates::on_diagram(case, &traced, &stability);
+            Presented { trace, curve, stability }
+        });
+        with_asymmetric(&mut explored, asymmetric::Asymmetric::default(), waves);
+        explored
+    }
+}
