@@ -1,8 +1,9 @@
 //! The binary `arclen`: bifurcation diagrams from the command line.
 //!
-//! `arguments` says what may be asked, `commands` does it; between them, `case` turns a case file
-//! into a checked case, `run` traces it, `output` and `pictures` turn the result into files.
+//! `arguments` says what may be asked, `commands` does it with the libraries `study`, `pictures` and
+//! `paper`; `advice` says what to do about their errors, `terminal` is the only place that prints.
 
+mod advice;
 mod arguments;
 mod commands;
 mod exit;

@@ -1,5 +1,6 @@
 //! How results leave a command: files, JSON on standard output, a summary, an exit code.
 
+use crate::advice::Advised;
 use crate::arguments::OutputArguments;
 use crate::exit::Exit;
 use crate::terminal;
@@ -27,7 +28,7 @@ impl OutputArguments {
     ) -> Result<Option<Folder>, Exit> {
         let claimed = self.place(case).map(|path| Folder::claim(&path, names, inputs));
         claimed.transpose().map_err(|error| {
-            terminal::error(&error);
+            terminal::error(&error.advised());
             Exit::BadInput
         })
     }

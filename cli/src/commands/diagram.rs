@@ -2,6 +2,7 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
+use crate::advice::Advised;
 use crate::arguments::DiagramArguments;
 use crate::exit::Exit;
 use crate::terminal;
@@ -25,8 +26,8 @@ pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
         Ok(loaded) => loaded.case,
         Err(exit) => return exit,
     };
-    let refuse = |error: &dyn std::fmt::Display| {
-        terminal::error(error);
+    let refuse = |error: &dyn Advised| {
+        terminal::error(&error.advised());
         Exit::BadInput
     };
     let names: Vec<&str> = [DIAGRAM, CASE, pictures::DIAGRAM, REPORT, TABLES]

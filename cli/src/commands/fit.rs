@@ -1,6 +1,7 @@
 //! `arclen fit`: from measured curves to the shell's properties.
 
 use super::delivery::Made;
+use crate::advice::Advised;
 use crate::arguments::{FitArguments, SegmentsWanted, set};
 use crate::exit::Exit;
 use crate::terminal;
@@ -42,7 +43,7 @@ pub(super) fn fit(arguments: &FitArguments) -> Exit {
 fn plan(arguments: &FitArguments, case: &PathBuf, lab: &Lab, wishes: Wishes<'_>) -> Exit {
     let loaded = match load(case, &[], &catalogue()) {
         Ok(loaded) => loaded,
-        Err(error) => return refuse(&error),
+        Err(error) => return refuse(&error.advised()),
     };
     let inputs: Vec<PathBuf> = std::iter::once(case).chain(&arguments.known).cloned().collect();
     let folder = match arguments.output.folder(&loaded.case.name, &[PLAN], &inputs) {
@@ -81,8 +82,7 @@ fn wishes(arguments: &FitArguments) -> Wishes<'_> {
 
 fn prepare(arguments: &FitArguments) -> Result<(Lab, Laws, Profiles), String> {
     let overrides: Vec<Override> = set(&arguments.set).collect();
-    let lab =
-        lab::load(arguments.known.as_deref(), &overrides).map_err(|error| lab::told(&error))?;
+    let lab = lab::load(arguments.known.as_deref(), &overrides).map_err(|error| error.advised())?;
     let laws = match arguments.law.as_deref() {
         None => Laws::Known,
         Some("all") => Laws::All,

@@ -2,6 +2,7 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
+use crate::advice::Advised;
 use crate::arguments::MapArguments;
 use crate::exit::Exit;
 
@@ -31,7 +32,7 @@ pub(super) fn map(arguments: &MapArguments) -> Exit {
     observer.finish();
     match outcome {
         Err(error) => {
-            terminal::error(&error);
+            terminal::error(&error.advised());
             Exit::BadInput
         }
         Ok(result) => deliver(arguments, &case, &result, folder.as_ref()),

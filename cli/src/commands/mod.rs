@@ -13,6 +13,7 @@ mod progress;
 mod sweep;
 mod trace;
 
+use crate::advice::Advised;
 use crate::arguments::{Arguments, CaseArguments, Command};
 use crate::exit::Exit;
 use crate::terminal;
@@ -44,7 +45,7 @@ fn loaded(
 ) -> Result<LoadedCase, Exit> {
     let loaded = load(&arguments.case, overrides, &catalogue());
     let loaded = loaded.map_err(|error| {
-        terminal::error(&error);
+        terminal::error(&error.advised());
         Exit::BadInput
     })?;
     if !quiet {

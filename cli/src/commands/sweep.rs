@@ -2,6 +2,7 @@
 
 use super::delivery::Made;
 use super::progress::stop_on_signals;
+use crate::advice::Advised;
 use crate::arguments::{MergeArguments, OutputArguments, SweepArguments};
 use crate::exit::Exit;
 use crate::terminal;
@@ -116,8 +117,8 @@ fn records(kept: &[Kept]) -> Vec<CaseRecord> {
     kept.iter().map(|case| case.record.clone()).collect()
 }
 
-fn refuse(error: &dyn std::fmt::Display) -> Exit {
-    terminal::error(error);
+fn refuse(error: &dyn Advised) -> Exit {
+    terminal::error(&error.advised());
     Exit::BadInput
 }
 

@@ -2,6 +2,7 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
+use crate::advice::Advised;
 use crate::arguments::TraceArguments;
 use crate::exit::Exit;
 use pictures::{REPORT, report};
@@ -34,7 +35,7 @@ pub(super) fn trace(arguments: &TraceArguments) -> Exit {
     observer.finish();
     match outcome {
         Err(error) => {
-            terminal::error(&error);
+            terminal::error(&error.advised());
             Exit::BadInput
         }
         Ok(result) => deliver(arguments, &case, &result, folder.as_ref()),

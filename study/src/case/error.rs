@@ -20,7 +20,7 @@ pub enum LoadError {
         known: Vec<String>,
     },
     /// A file that is not there.
-    #[error("{file}: no such file; give the path of a case file, or a name from \"arclen list\"")]
+    #[error("{file}: no such file")]
     Missing {
         /// Its path.
         file: String,

@@ -1,7 +1,7 @@
 //! What a laboratory knows: a TOML file, overrides, and what is fixed, freed or known with an error.
 
 use crate::case::document::{self, Override};
-use crate::case::error::{CaseError, Complaint, LoadError};
+use crate::case::error::{Complaint, LoadError};
 use crate::case::reader::{Allowed, NOT_NEGATIVE, POSITIVE, Reader, Section};
 use crate::case::source;
 use crate::units::{self, Dimension};
@@ -368,14 +368,4 @@ fn parse_range(text: &str) -> Result<(f64, f64), String> {
         return Err(format!("{FLAG} {}: the heights must differ", document::shown(text)));
     }
     Ok((a, b))
-}
-
-/// The errors of one file, as text.
-pub fn told(error: &LoadError) -> String {
-    match error {
-        LoadError::Invalid(errors) => {
-            errors.iter().map(CaseError::to_string).collect::<Vec<_>>().join("\n")
-        }
-        other => other.to_string(),
-    }
 }

@@ -29,8 +29,7 @@ const EVERY: Duration = Duration::from_secs(2);
 pub enum CheckpointError {
     /// Another case.
     #[error(
-        "{}: holds an unfinished diagram of another case ({difference}); give another --out, or \
-         --restart to begin anew", .path.display()
+        "{}: holds an unfinished diagram of another case ({difference})", .path.display()
     )]
     Foreign {
         /// The folder.
@@ -40,7 +39,7 @@ pub enum CheckpointError {
     },
     /// A file that cannot be read.
     #[error(
-        "{}: cannot be read: {detail}; give --restart to begin the diagram anew", .path.display()
+        "{}: cannot be read: {detail}", .path.display()
     )]
     Unreadable {
         /// The file.

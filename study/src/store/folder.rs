@@ -20,10 +20,10 @@ pub struct Folder {
 #[non_exhaustive]
 pub enum FolderError {
     /// No path at all.
-    #[error("--out: the path of the output folder is empty; give a folder")]
+    #[error("the path of the output folder is empty; give a folder")]
     Empty,
     /// A part of the path is a file.
-    #[error("--out {}: {} is not a folder; give another path", .path.display(), .part.display())]
+    #[error("{}: {} is not a folder; give another path", .path.display(), .part.display())]
     NotAFolder {
         /// The folder asked for.
         path: PathBuf,
@@ -31,7 +31,7 @@ pub enum FolderError {
         part: PathBuf,
     },
     /// A place in which nothing can be made.
-    #[error("--out {}: cannot write to {}: {source}; give another path", .path.display(), .part.display())]
+    #[error("{}: cannot write to {}: {source}; give another path", .path.display(), .part.display())]
     NotWritable {
         /// The folder asked for.
         path: PathBuf,
@@ -41,7 +41,7 @@ pub enum FolderError {
         source: io::Error,
     },
     /// A folder in the place of an output file.
-    #[error("--out {}: {} is a folder, so the file of that name cannot be written; remove it or give another path", .path.display(), .name)]
+    #[error("{}: {} is a folder, so the file of that name cannot be written; remove it or give another path", .path.display(), .name)]
     Occupied {
         /// The folder asked for.
         path: PathBuf,
@@ -50,7 +50,7 @@ pub enum FolderError {
     },
     /// A file that the work starts from, in the place of an output file.
     #[error(
-        "--out {}: writing {name} there would overwrite {}, from which this starts; give another \
+        "{}: writing {name} there would overwrite {}, from which this starts; give another \
          folder for the results", .path.display(), .input.display()
     )]
     Input {
@@ -62,7 +62,7 @@ pub enum FolderError {
         input: PathBuf,
     },
     /// A name that no system takes.
-    #[error("--out {}: a name of {length} bytes is too long for a folder; give one of at most {LONGEST}", .path.display())]
+    #[error("{}: a name of {length} bytes is too long for a folder; give one of at most {LONGEST}", .path.display())]
     LongName {
         /// The folder asked for.
         path: PathBuf,

@@ -28,7 +28,7 @@ pub enum StoreError {
     /// The folder is that of another sweep.
     #[error(
         "{}: holds the cases of another sweep, or of this one before it was changed \
-         ({difference}); give another --out, or --restart to begin anew", .path.display()
+         ({difference})", .path.display()
     )]
     Foreign {
         /// The folder.
@@ -37,7 +37,7 @@ pub enum StoreError {
         difference: String,
     },
     /// No sweep at all.
-    #[error("{}: no results of a sweep; give the folders that \"arclen sweep\" wrote", .path.display())]
+    #[error("{}: no results of a sweep", .path.display())]
     Missing {
         /// The folder.
         path: PathBuf,
