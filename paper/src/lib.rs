@@ -10,6 +10,7 @@ mod estimates;
 mod files;
 mod laws;
 mod manifest;
+mod number;
 mod page;
 mod panels;
 mod ring;

@@ -1,4 +1,4 @@
-//! What each figure shows: `cli/figures/figNN.toml`, embedded.
+//! What each figure shows: `figures/figNN.toml`, embedded.
 
 use serde::Deserialize;
 
@@ -29,7 +29,7 @@ pub(crate) struct Manifest {
 pub(crate) struct CurveSpec {
     /// Its name in the figure.
     pub name: String,
-    /// The case it starts from, of `cli/figures/cases`.
+    /// The case it starts from, of `figures/cases`.
     pub case: String,
     /// Values that replace those of the case, as `--set` takes them.
     #[serde(default)]

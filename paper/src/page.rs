@@ -5,6 +5,7 @@ use super::claims::{Claim, Source, Tally, Verdict};
 use super::estimates::EstimateRow;
 use super::files::{WINDOWS, data_name};
 use super::manifest::{STABILITY, stem};
+use super::number::short;
 use pictures::{BOLD, FAMILY, FONT, escape};
 use std::fmt::Write;
 
@@ -191,25 +192,6 @@ fn small(out: &mut String, text: &str) {
     escape(out, rest);
 }
 
-/// Four digits.
-pub(super) fn short(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 {
-        "0".to_owned()
-    } else if (1e-3..1e5).contains(&size) {
-        let decimals = (3 - size.log10().floor() as i32).clamp(0, 6) as usize;
-        let text = format!("{value:.decimals$}");
-        let text = if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        };
-        text.replace('-', "−")
-    } else {
-        format!("{value:.3e}").replace('-', "−")
-    }
-}
-
 /// Bytes as text that a page can hold.
 fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -238,14 +220,6 @@ mod tests {
         assert_eq!(
             ["", "f", "fo", "foo", "foob"].map(of),
             ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg=="]
-        );
-    }
-
-    #[test]
-    fn short_numbers_have_four_digits() {
-        assert_eq!(
-            [0.0, 7.78392, -0.0269, 1234.5, 3e-6].map(short),
-            ["0", "7.784", "−0.0269", "1234", "3.000e−6"]
         );
     }
 }

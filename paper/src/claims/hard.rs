@@ -12,7 +12,7 @@ use super::tolerance::{
 use super::{Branches, Claim, Row};
 use crate::laws;
 use crate::manifest::Law;
-use crate::page::short;
+use crate::number::short;
 
 /// Fig. 5.
 pub(super) fn measured_shells(of: &Branches<'_>) -> Vec<Claim> {

@@ -17,7 +17,7 @@ mod tolerance;
 pub(super) use tally::Tally;
 
 use super::curve::Traced;
-use super::page::short;
+use super::number::short;
 use super::ring::RingBranch;
 use serde::Serialize;
 use tolerance::Kind;

@@ -1,6 +1,6 @@
 //! How far apart a statement and a number may be: one tolerance for each kind of statement.
 
-use crate::page::short;
+use crate::number::short;
 
 /// A kind of statement with its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
