@@ -261,7 +261,7 @@ mod tests {
 
     #[test]
     fn a_contact_branch_has_its_force_curves_and_its_special_points() {
-        let result = example();
+        let result = TraceResult { stability: None, ..example() };
         let data = data(&report("fig12", "why", &[("branch".to_owned(), &result)]).unwrap());
         assert_eq!((&data["title"], &data["subtitle"]), (&"fig12".into(), &"why".into()));
         let titles: Vec<_> =
