@@ -4,6 +4,6 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 out="${1:-dist}"
 python3 -m pip install --quiet "maturin>=1.9,<2"
-python3 -m maturin build --release --locked --out "$out"
+python3 -m maturin build --profile wheel --locked --out "$out"
 python3 -m maturin sdist --out "$out"
 ls -l "$out"

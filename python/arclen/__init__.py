@@ -1,6 +1,6 @@
 """Numerical continuation and bifurcation of equilibria ``f(u, p) = 0``.
 
-A problem is a residual; `Problem.trace` follows its solutions along a parameter and locates the special
+A problem of one's own is a residual; `Problem.trace` follows its solutions along a parameter and locates the special
 points on the way: folds, branch points, Hopf points.
 
 >>> import numpy as np, arclen
@@ -14,21 +14,38 @@ points on the way: folds, branch points, Hopf points.
 [('H', 2.0)]
 >>> branch[0].p, branch[-1].p, branch.stopped_because
 (1.0, 3.0, 'target')
+
+Cases of shells between plates, and a catalogue of classical problems, are there already: `trace`,
+`diagram`, `cycle` and `map` compute what the program ``arclen`` does, number by number.
+
+>>> bratu = arclen.trace("bratu")
+>>> bratu.parameter, [event.label for event in bratu.events.of("fold")]
+('lambda', ['LP'])
 """
 
 from ._arclen import EngineError as ArclenError
 from ._arclen import __version__
 from ._branch import Branch, Diagram, Event, Point, Solutions
 from ._problem import InterruptedWarning, Problem
+from ._study import Case, CaseBranch, Cycle, Map, cases, cycle, diagram, map, trace
 
 __all__ = [
     "ArclenError",
     "Branch",
+    "Case",
+    "CaseBranch",
+    "Cycle",
     "Diagram",
     "Event",
     "InterruptedWarning",
+    "Map",
     "Point",
     "Problem",
     "Solutions",
     "__version__",
+    "cases",
+    "cycle",
+    "diagram",
+    "map",
+    "trace",
 ]

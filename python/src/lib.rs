@@ -9,6 +9,7 @@ mod engine;
 mod names;
 mod problem;
 mod storage;
+mod studies;
 
 use branch::RawBranch;
 use callbacks::{Callbacks, OutsidePattern};
@@ -126,5 +127,9 @@ fn _arclen(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(make_engine, module)?)?;
     module.add_class::<Engine>()?;
     module.add_class::<RawBranch>()?;
+    module.add_function(wrap_pyfunction!(studies::find_case, module)?)?;
+    module.add_function(wrap_pyfunction!(studies::parse_case, module)?)?;
+    module.add_function(wrap_pyfunction!(studies::list_cases, module)?)?;
+    module.add_class::<studies::RawCase>()?;
     Ok(())
 }

@@ -1,0 +1,703 @@
+"""Cases of shells, devices and the catalogue, and what is computed of them: the program's own studies."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import warnings
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _arclen
+from ._branch import Branch, Diagram, Event, Events, Point
+from ._problem import InterruptedWarning, _progress
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+#: The table of a case file in which a bare key stands.
+_TABLES = {
+    "law": "shell",
+    "poisson": "shell",
+    "b": "shell",
+    "bending": "dimensionless",
+    "pressure": "dimensionless",
+    "adhesion": "dimensionless",
+    "film": "dimensionless",
+    "surface_tension": "dimensionless",
+    "gas_exponent": "dimensionless",
+    "radius": "physical",
+    "young": "physical",
+    "thickness": "physical",
+    "chi": "physical",
+    "elements": "mesh",
+    "grading": "mesh",
+    "start": "path",
+    "end": "path",
+    "max_step": "path",
+    "min_step": "path",
+    "max_points": "path",
+    "eigenvalues": "path",
+    "depth": "diagram",
+    "max_branches": "diagram",
+    "scan": "stability",
+    "max_n": "stability",
+    "stiffness": "device",
+}
+
+
+def cases() -> dict[str, str]:
+    """Names of the shipped cases and of the problems of the catalogue, each with a line about it.
+
+    >>> import arclen
+    >>> "fig12" in arclen.cases(), "bratu" in arclen.cases()
+    (True, True)
+    """
+    shipped, catalogue = _arclen.list_cases()
+    return {**dict.fromkeys(shipped, "a shipped case"), **dict(catalogue)}
+
+
+class Case:
+    """A checked case: what is computed, and with which values.
+
+    Parameters
+    ----------
+    what : str, path, dict or Case
+        A shipped case (`cases`), a problem of the catalogue, the path of a case file, or the contents of
+        one as a dictionary of dictionaries.
+    **keys
+        Values in place of those of the case: ``adhesion=3e-3``, ``elements=200``, ``end=0.7``. A key that
+        stands in several tables is written with its own, ``path__end=0.7`` or
+        ``**{"path.end": 0.7}``, or ``path={"end": 0.7}``.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    notes : list of str
+        Remarks that are no errors.
+
+    Raises
+    ------
+    ValueError
+        When something is wrong with it; the message names the file, the key, the value and what to write
+        instead.
+
+    Examples
+    --------
+    >>> import arclen
+    >>> case = arclen.Case("fig12", elements=60)
+    >>> case.name
+    'fig12'
+    >>> arclen.Case("fig12", adhesion=-1)
+    Traceback (most recent call last):
+    ...
+    ValueError: fig12, keyword: dimensionless.adhesion = -1: must be ...
+    """
+
+    def __init__(self, what: Any, **keys: Any) -> None:
+        self._source: str | tuple[str, str]
+        given: list[str] = []
+        if isinstance(what, Case):
+            self._source, given = what._source, list(what._keys)
+        elif isinstance(what, Mapping):
+            name = what.get("name", "case")
+            self._source = (str(name), _toml(what))
+        elif isinstance(what, (str, os.PathLike)):
+            path = os.fspath(what)
+            if not isinstance(path, str):
+                raise TypeError(f"{what!r} is not a path of text")
+            self._source = path
+        else:
+            raise TypeError(f"{what!r} is neither a name, a path nor a dictionary")
+        self._raw = self._load(given)
+        # where a bare key stands depends on the case
+        given += [f"{key}={_value(value)}" for key, value in _flat(keys, self.to_toml())]
+        self._keys: list[str] = given
+        if keys:
+            self._raw = self._load(given)
+
+    def _load(self, keys: list[str]) -> _arclen.RawCase:
+        if isinstance(self._source, tuple):
+            name, text = self._source
+            return _arclen.parse_case(name, text, keys)
+        return _arclen.find_case(self._source, keys)
+
+    @property
+    def name(self) -> str:
+        return self._raw.name
+
+    @property
+    def notes(self) -> list[str]:
+        return self._raw.notes
+
+    def to_toml(self) -> str:
+        """The case as a case file, with every default written out."""
+        return self._raw.to_toml()
+
+    def __repr__(self) -> str:
+        return f"<Case {self.name}>"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Case) and self.to_toml() == other.to_toml()
+
+    __hash__ = object.__hash__
+
+    def __reduce__(self) -> Any:
+        # as it was resolved: the file may be another one elsewhere
+        return (_resolved, (self.name, self.to_toml()))
+
+
+def _resolved(name: str, toml: str) -> Case:
+    case = Case.__new__(Case)
+    case._source, case._keys = (name, toml), []
+    case._raw = case._load([])
+    return case
+
+
+def _flat(keys: Mapping[str, Any], toml: str) -> Iterator[tuple[str, Any]]:
+    """Keys with their tables."""
+    for key, value in keys.items():
+        if isinstance(value, Mapping):
+            for inner, one in _flat_table(value):
+                yield f"{key}.{inner}", one
+        elif "." in key or "__" in key:
+            yield key.replace("__", "."), value
+        elif f"\n{key} = " in toml.partition("\n[parameters]")[2].partition("\n[")[0]:
+            # a parameter of a problem of the catalogue
+            yield f"parameters.{key}", value
+        elif key in _TABLES:
+            table = _TABLES[key]
+            if table == "dimensionless" and "\n[physical]" in toml and key != "gas_exponent":
+                table = "physical"
+            yield f"{table}.{key}", value
+        else:
+            yield key, value
+
+
+def _flat_table(table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            for inner, one in _flat_table(value):
+                yield f"{key}.{inner}", one
+        else:
+            yield str(key), value
+
+
+def _value(value: Any) -> str:
+    """A value in TOML."""
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value))
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return "[" + ", ".join(_value(one) for one in value) + "]"
+    raise TypeError(f"{value!r} is no value of a case file")
+
+
+def _toml(tables: Mapping[Any, Any], prefix: str = "") -> str:
+    """A dictionary of dictionaries in TOML."""
+    lines, inner = [], []
+    for key, value in tables.items():
+        word = json.dumps(str(key))
+        if isinstance(value, Mapping):
+            inner.append(f"[{prefix}{word}]\n{_toml(value, f'{prefix}{word}.')}")
+        else:
+            lines.append(f"{word} = {_value(value)}\n")
+    return "".join([*lines, *inner])
+
+
+class _Table:
+    """Columns of a table of the program."""
+
+    def _read(self, record: Mapping[str, Any]) -> None:
+        self._columns: dict[str, Any] = {}
+        self.labels: dict[str, str] = {}
+        self.units: dict[str, str] = {}
+        for name, label, unit, values in record["columns"]:
+            if isinstance(values, list):
+                values = np.array(values, dtype=object)
+                values.flags.writeable = False
+            self._columns[name] = values
+            self.labels[name] = label
+            self.units[name] = unit
+        self._csv: str = record["csv"]
+
+
+class CaseBranch(_Table, Branch):
+    """A branch of a case: a `Branch` with the columns of the program's ``branch.csv``.
+
+    Numbers are those of the file to the last bit; a cell that is empty there is NaN. Columns of words are
+    arrays of strings. States are not kept: ``u`` of its events is None.
+
+    Attributes
+    ----------
+    case : Case or None
+        The case.
+    units, labels : dict
+        Unit and name in words of every column.
+    record : dict
+        What the program writes to ``events.json``.
+    shapes : list of dict
+        Meridians at a few points: ``label``, ``sigma`` and ``z`` (arrays), ``plate``.
+    """
+
+    def __init__(self, case: Case | None, record: dict[str, Any], origin: Any = None) -> None:
+        self._record = record
+        self._read(record)
+        self.case = case
+        self.origin = origin
+        self.dim = 0
+        self.record: dict[str, Any] = json.loads(record["json"])
+        self.parameter: str = self.record["parameter"]
+        fixed = ("point", self.parameter, "unstable", "event")
+        self.observables = [name for name in self._columns if name not in fixed]
+        self.stopped_because: str = self.record["stopped_because"]
+        self.stopped_detail: str = self.record.get("stopped_detail") or ""
+        self.began_because = None
+        self.shapes: list[dict[str, Any]] = record.get("shapes", [])
+        self._events = None
+
+    @property
+    def columns(self) -> list[str]:
+        return list(self._columns)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        return {self.parameter: float(self[self.parameter][0])}
+
+    @property
+    def events(self) -> Events:
+        if self._events is None:
+            marked = np.flatnonzero(self._columns["event"] != "")
+            found: list[Event] = []
+            for number, record in enumerate(self.record["events"]):
+                at = int(marked[number]) if number < marked.size else len(self) - 1
+                found.append(CaseEvent(self, number, at, record))
+            self._events = Events(found)
+        return self._events
+
+    @property
+    def is_complete(self) -> bool:
+        complete = ("target", "closed-loop", "domain", "retraced", "cycles-vanish")
+        return self.stopped_because in complete
+
+    @property
+    def is_certain(self) -> bool:
+        return self.record.get("certified") is not False
+
+    @property
+    def doubts(self) -> list[tuple[float, float, str]]:
+        return []
+
+    @property
+    def statistics(self) -> dict[str, int]:
+        return {"newton_iterations": self.record["newton_iterations"]}
+
+    def __getitem__(self, key: Any) -> Any:
+        column = self._columns.get(key) if isinstance(key, str) else None
+        if column is not None:
+            return column
+        if isinstance(key, str):
+            raise KeyError(f"no column {key!r}: there are {', '.join(self.columns)}")
+        return CasePoint(self, self._index(key))
+
+    def __len__(self) -> int:
+        return len(self._columns["point"])
+
+    def __iter__(self) -> Iterator[Point]:
+        return (CasePoint(self, index) for index in range(len(self)))
+
+    def u(self, index: int) -> np.ndarray:
+        raise ValueError("the states of a case are not kept")
+
+    @property
+    def states(self) -> np.ndarray:
+        raise ValueError("the states of a case are not kept")
+
+    def shape(self, event: Event) -> dict[str, Any] | None:
+        """The mode at a loss of symmetry.
+
+        Returns
+        -------
+        dict or None
+            ``n``, ``parity``, and arrays over the meridian: ``s`` (angle from the pole), the amplitudes
+            ``u``, ``w`` (radial, axial) and ``v`` (around the axis); None at other special points.
+        """
+        if not isinstance(event, CaseEvent) or event.branch is not self:
+            raise TypeError(f"shape: {event!r} is no event of this branch")
+        modes = self._record.get("modes", {})
+        found = modes.get(event.number)
+        return None if found is None else dict(found)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The columns as a table; ``attrs`` hold units and labels. Needs pandas."""
+        import pandas
+
+        table = pandas.DataFrame(self._columns)
+        table.attrs = {"units": self.units, "labels": self.labels}
+        return table.set_index("point")
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The numbers along the branch, with units and labels as attributes. Needs xarray."""
+        import xarray
+
+        variables = {
+            name: ("point", values, {"units": self.units[name], "long_name": self.labels[name]})
+            for name, values in self._columns.items()
+            if name not in ("point", "event")
+        }
+        variables["event"] = ("point", self._columns["event"].astype(str), {})
+        name = self.record["case"]
+        return xarray.Dataset(variables, {"point": self._columns["point"]}, {"case": name})
+
+    def to_csv(self, path: str | os.PathLike[str] | None = None) -> str | None:
+        """``branch.csv``, written to a file, else returned."""
+        if path is None:
+            return self._csv
+        with open(path, "w", encoding="utf-8", newline="") as file:
+            file.write(self._csv)
+        return None
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a folder as the program does: ``branch.csv``, ``events.json``, ``case.toml``."""
+        folder = pathlib.Path(path)
+        folder.mkdir(parents=True, exist_ok=True)
+        files = {"branch.csv": self._csv, "events.json": self._record["json"]}
+        if self.case is not None:
+            files["case.toml"] = self.case.to_toml()
+        for name, text in files.items():
+            part = folder / f".{name}.part"
+            part.write_bytes(text.encode())
+            os.replace(part, folder / name)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> CaseBranch:
+        """A branch from a folder that `save` or the program wrote.
+
+        Raises
+        ------
+        ValueError
+            When the folder holds something else.
+        """
+        folder = pathlib.Path(path)
+        try:
+            table = (folder / "branch.csv").read_text("utf-8")
+            events = (folder / "events.json").read_text("utf-8")
+            case = None
+            if (folder / "case.toml").exists():
+                toml = (folder / "case.toml").read_text("utf-8")
+                case = _resolved(json.loads(events)["case"], toml)
+            return cls(case, {"columns": _columns(table), "csv": table, "json": events})
+        except (OSError, ValueError, KeyError, IndexError, TypeError) as error:
+            raise ValueError(f"{folder} holds no branch of the program: {error}") from None
+
+    def __reduce__(self) -> Any:
+        return (CaseBranch, (self.case, self._record, self.origin))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, CaseBranch) and self._csv == other._csv
+
+    __hash__ = object.__hash__
+
+    def __repr__(self) -> str:
+        labels = ", ".join(event.label for event in self.events) or "no events"
+        name = self.record["case"]
+        return f"<Branch of {name}: {len(self)} points, {labels}, stopped: {self.stopped_because}>"
+
+
+class CasePoint(Point):
+    """A point of a branch of a case; its values are ``point["force"]``."""
+
+    def __init__(self, branch: CaseBranch, index: int) -> None:
+        self.branch = branch
+        self.index = index
+        self.p = float(branch[branch.parameter][index])
+        self.s = self.dp_ds = float("nan")
+        count = branch["unstable"][index] if "unstable" in branch else float("nan")
+        self.unstable = None if np.isnan(count) else int(count)
+        self.certified = branch.is_certain
+        self.eigenvalues = np.zeros(0, dtype=complex)
+
+    @property
+    def u(self) -> Any:
+        """None: states of cases are not kept."""
+        return None
+
+    def __getitem__(self, name: str) -> Any:
+        if not isinstance(name, str):
+            raise TypeError(f"{name!r} is not the name of a column")
+        return self.branch[name][self.index]
+
+
+_LABELS = {
+    "fold": "LP",
+    "branch-point": "BP",
+    "hopf": "H",
+    "cusp": "CP",
+    "bogdanov-takens": "BT",
+    "zero-hopf": "ZH",
+    "generalised-hopf": "GH",
+    "double-hopf": "HH",
+    "symmetry-breaking": "SB",
+}
+
+
+class CaseEvent(CasePoint, Event):
+    """A special point of a branch of a case.
+
+    `kind`, `label`, `p`, `unstable_before`, `unstable_after`, `residual`, `error_estimate`, `type` and
+    `criticality` are those of `Event`; `record` has everything that ``events.json`` says of it.
+    """
+
+    def __init__(self, branch: CaseBranch, number: int, index: int, record: dict[str, Any]) -> None:
+        CasePoint.__init__(self, branch, index)
+        self.number = number
+        self.record = record
+        self.kind = record["kind"]
+        self.label = _LABELS.get(self.kind, "UZ")
+        if self.label == "UZ" and self.kind.endswith(("-minimum", "-maximum")):
+            self.label = self.kind[-7:-4].upper()
+        value = record.get(branch.parameter)
+        self.p = float("nan") if value is None else float(value)
+        self.unstable_before = record.get("unstable_before")
+        self.unstable_after = record.get("unstable_after")
+        self.residual = _number(record.get("residual"))
+        self.error_estimate = _number(record.get("error_estimate"))
+        self.type = record.get("type")
+        self.criticality = record.get("criticality")
+        form = ("curvature", "order", "frequency", "lyapunov", "lyapunov_error", "multiplicity")
+        self.normal_form = {key: record[key] for key in form if key in record}
+        self.modes = []
+        self.directions = []
+
+
+class Cycle(_Table):
+    """A cycle of loading and unloading: ``cycle["force"]`` are columns of the path.
+
+    Attributes
+    ----------
+    columns : list of str
+    record : dict
+        What the program writes to ``cycle.json``: ``jumps``, ``pull_off``, ``dissipated_total``,
+        ``loop_area`` and more.
+    stopped_because : str
+    """
+
+    def __init__(self, case: Case, record: dict[str, Any]) -> None:
+        self.case = case
+        self._read(record["path"])
+        self.record: dict[str, Any] = json.loads(record["json"])
+        self.stopped_because: str = self.record.get("stopped_because", "")
+
+    @property
+    def columns(self) -> list[str]:
+        return list(self._columns)
+
+    @property
+    def jumps(self) -> list[dict[str, Any]]:
+        return self.record["jumps"]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._columns:
+            raise KeyError(f"no column {name!r}: there are {', '.join(self.columns)}")
+        return self._columns[name]
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The path as a table. Needs pandas."""
+        import pandas
+
+        return pandas.DataFrame(self._columns)
+
+    def to_csv(self) -> str:
+        """The path as CSV."""
+        return self._csv
+
+    def __repr__(self) -> str:
+        return f"<Cycle of {self.case.name}: {len(self.jumps)} jumps>"
+
+
+class Curve(_Table):
+    """A curve of special points of a map; ``curve["film"]`` is a column.
+
+    Attributes
+    ----------
+    kind : str
+        Of the special points: ``"fold"``, ``"hopf"``, ``"branch-point"``.
+    began_because, stopped_because : str
+        Why it ends at either end.
+    """
+
+    def __init__(self, record: dict[str, Any]) -> None:
+        self._read(record)
+        self.kind: str = record["kind"]
+        self.began_because, self.stopped_because = record["stopped"]
+
+    @property
+    def columns(self) -> list[str]:
+        return list(self._columns)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._columns:
+            raise KeyError(f"no column {name!r}: there are {', '.join(self.columns)}")
+        return self._columns[name]
+
+    def to_csv(self) -> str:
+        """The curve as CSV."""
+        return self._csv
+
+    def __repr__(self) -> str:
+        return f"<Curve of {self.kind}s>"
+
+
+class Map:
+    """Curves of special points in two parameters.
+
+    Attributes
+    ----------
+    curves : list of Curve
+    points : list of dict
+        Special points on them: ``kind``, both parameters by name, ``error_estimate``.
+    record : dict
+        What the program writes to ``map.json``.
+    """
+
+    def __init__(self, case: Case, record: dict[str, Any]) -> None:
+        self.case = case
+        self.curves = [Curve(one) for one in record["curves"]]
+        self.record: dict[str, Any] = json.loads(record["json"])
+        self.points: list[dict[str, Any]] = self.record["points"]
+        self.stopped_because: str = self.record.get("stopped_because", "")
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(point["kind"] for point in self.points) or "no special points"
+        return f"<Map of {self.case.name}: {len(self.curves)} curves, {kinds}>"
+
+
+# ---- computations --------------------------------------------------------------------------------
+
+
+def trace(case: Any, *, progress: Any = None, **keys: Any) -> CaseBranch:
+    """The branch of a case, as ``arclen trace`` computes it.
+
+    Parameters
+    ----------
+    case : str, path, dict or Case
+        See `Case`.
+    progress : bool or callable, optional
+        True shows a bar of tqdm; a function is called after every point with the numbers of points and
+        events and the parameter, and ends the trace by returning True.
+    **keys
+        Values in place of those of the case; see `Case`.
+
+    Returns
+    -------
+    CaseBranch
+
+    Raises
+    ------
+    ValueError
+        When something is wrong with the case, or there is no first point.
+
+    Examples
+    --------
+    >>> import arclen
+    >>> branch = arclen.trace("bratu")
+    >>> branch.stopped_because, branch.events.of("LP")[0].kind
+    ('target', 'fold')
+    """
+    loaded = Case(case, **keys)
+    record, error = loaded._raw.trace(_progress(progress))
+    return _settled(CaseBranch(loaded, record), error)
+
+
+def diagram(case: Any, *, progress: Any = None, **keys: Any) -> Diagram:
+    """The bifurcation diagram of a case, as ``arclen diagram`` computes it.
+
+    Parameters are those of `trace`. ``branch.origin`` is the entry ``from`` of ``diagram.json``.
+
+    Returns
+    -------
+    Diagram
+    """
+    loaded = Case(case, **keys)
+    found, error = loaded._raw.diagram(_progress(progress))
+    record = json.loads(found["json"])
+    branches: list[Branch] = [
+        CaseBranch(loaded, one, about.get("from"))
+        for one, about in zip(found["branches"], record["branches"])
+    ]
+    stopped = record["stopped_because"]
+    complete = stopped == "complete" and all(branch.is_complete for branch in branches)
+    return _settled(Diagram(branches, found["joints"], stopped, complete), error)
+
+
+def cycle(case: Any, *, progress: Any = None, **keys: Any) -> Cycle:
+    """Loading and unloading with jumps, as ``arclen cycle`` computes it; parameters as for `trace`."""
+    loaded = Case(case, **keys)
+    record, error = loaded._raw.cycle(_progress(progress))
+    return _settled(Cycle(loaded, record), error)
+
+
+def map(case: Any, over: str, *, progress: Any = None, **keys: Any) -> Map:
+    """Special points in two parameters, as ``arclen map --over KEY`` computes it.
+
+    Parameters
+    ----------
+    case, progress, **keys
+        Those of `trace`.
+    over : str
+        The second parameter: a key of the case, such as ``"film"``.
+
+    Returns
+    -------
+    Map
+    """
+    if not isinstance(over, str):
+        raise TypeError(f"over: {over!r} is not a key")
+    loaded = Case(case, **keys)
+    record, error = loaded._raw.map(over, _progress(progress))
+    return _settled(Map(loaded, record), error)
+
+
+def _settled(found: Any, error: BaseException | None) -> Any:
+    """The result, or the exception of a callback; Ctrl-C leaves what there is."""
+    if error is None:
+        return found
+    if isinstance(error, KeyboardInterrupt):
+        warnings.warn(
+            f"interrupted: {found!r} is what was computed", InterruptedWarning, stacklevel=3
+        )
+        return found
+    raise error
+
+
+def _number(value: Any) -> float:
+    return float("nan") if value is None else float(value)
+
+
+def _columns(text: str) -> list[tuple[str, str, str, Any]]:
+    """Columns of a CSV file of the program, as far as the file tells."""
+    import csv
+
+    rows = list(csv.reader(text.splitlines()))
+    columns: list[tuple[str, str, str, Any]] = []
+    for at, name in enumerate(rows[0]):
+        cells = [row[at] for row in rows[1:]]
+        values: Any = cells
+        if name != "event":
+            try:
+                values = np.array([float(cell) if cell else np.nan for cell in cells])
+                values.flags.writeable = False
+            except ValueError:
+                pass
+        columns.append((name, name, "", values))
+    return columns
