@@ -19,7 +19,9 @@ def axes_of(branch: Branch, x: str | None, y: str | None) -> tuple[str, str]:
     """The columns to draw."""
     x = branch.parameter if x is None else x
     if y is None:
-        y = branch.observables[0] if branch.observables else "u[0]"
+        observables = branch.observables
+        # of a shell under load what its user looks for
+        y = "force" if "force" in observables else observables[0] if observables else "u[0]"
     return x, y
 
 

@@ -4,6 +4,7 @@ import json
 import os
 import pickle
 import shutil
+import signal
 import subprocess
 
 import numpy as np
@@ -196,6 +197,22 @@ def test_progress_and_its_exceptions():
     with pytest.raises(RuntimeError) as caught:
         arclen.trace("bratu", progress=raises)
     assert caught.value is error
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
+def test_ctrl_c_keeps_what_was_traced():
+    def progress(points, events, p, s):
+        if points == 10:
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.warns(arclen.InterruptedWarning):
+        branch = arclen.trace("fig12", elements=60, progress=progress)
+    assert branch.stopped_because == "interrupted" and 10 <= len(branch) < 30
+
+
+def test_a_notebook_shows_force_and_folds(fig12):
+    html = fig12._repr_html_()
+    assert ">force</text>" in html and "stroke-dasharray" in html and "symmetry-breaking" in html
 
 
 def test_tables(fig12):
