@@ -28,6 +28,7 @@ from ._arclen import __version__
 from ._branch import Branch, Diagram, Event, Point, Solutions
 from ._problem import InterruptedWarning, Problem
 from ._study import Case, CaseBranch, Cycle, Map, cases, cycle, diagram, map, trace
+from ._sweep import Study, study
 
 __all__ = [
     "ArclenError",
@@ -42,10 +43,12 @@ __all__ = [
     "Point",
     "Problem",
     "Solutions",
+    "Study",
     "__version__",
     "cases",
     "cycle",
     "diagram",
     "map",
+    "study",
     "trace",
 ]

@@ -10,6 +10,7 @@ mod names;
 mod problem;
 mod storage;
 mod studies;
+mod sweeps;
 
 use branch::RawBranch;
 use callbacks::{Callbacks, OutsidePattern};
@@ -131,5 +132,6 @@ fn _arclen(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(studies::parse_case, module)?)?;
     module.add_function(wrap_pyfunction!(studies::list_cases, module)?)?;
     module.add_class::<studies::RawCase>()?;
+    module.add_class::<sweeps::RawSweep>()?;
     Ok(())
 }
