@@ -1,11 +1,9 @@
 //! The loading device of a contact case, the table `[device]`.
 
 use super::error::Complaint;
-use super::reader::{POSITIVE, Reader, Section};
+use super::keys::STIFFNESS;
+use super::reader::{Reader, Section};
 use crate::closest::closest;
-
-/// The keys of its table.
-pub(super) const KEYS: &[&str] = &["kind", "stiffness"];
 
 /// What holds the plates.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -24,7 +22,7 @@ pub enum DeviceCase {
 
 impl DeviceCase {
     /// The names that a case file may use.
-    const NAMES: [&str; 3] = ["grip", "dead-load", "cantilever"];
+    pub(super) const NAMES: [&str; 3] = ["grip", "dead-load", "cantilever"];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -54,7 +52,7 @@ pub(super) fn device(reader: &Reader, section: Section<'_>) -> Option<DeviceCase
         return None;
     };
     let kind = reader.text(section, "kind")?;
-    let stiffness = reader.number(section, "stiffness", POSITIVE);
+    let stiffness = reader.number(section, STIFFNESS.name, STIFFNESS.range());
     let given = section.get("stiffness");
     let device = match kind {
         "grip" => DeviceCase::Grip,

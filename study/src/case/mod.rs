@@ -8,6 +8,7 @@ mod catalogue;
 mod device;
 pub(crate) mod document;
 pub(crate) mod error;
+pub mod keys;
 pub(crate) mod name;
 mod physical;
 pub(crate) mod reader;

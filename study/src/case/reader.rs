@@ -2,26 +2,10 @@
 
 use super::document::{Node, Origin, Table, Value, shown};
 use super::error::{CaseError, Complaint};
+use super::keys::Range;
 use crate::closest::closest;
 use crate::units::{self, Dimension, Quantity};
 use std::cell::RefCell;
-
-/// A range of numbers, in words too.
-#[derive(Clone, Copy)]
-pub(crate) struct Allowed {
-    /// Whether a finite number is allowed.
-    pub holds: fn(f64) -> bool,
-    /// The same in words: "must be …".
-    pub words: &'static str,
-}
-
-/// Any finite number.
-pub(crate) const ANY: Allowed = Allowed { holds: |_| true, words: "a finite number" };
-/// Greater than zero.
-pub(crate) const POSITIVE: Allowed = Allowed { holds: |x| x > 0.0, words: "positive and finite" };
-/// Zero or greater.
-pub(crate) const NOT_NEGATIVE: Allowed =
-    Allowed { holds: |x| x >= 0.0, words: "zero or positive, and finite" };
 
 /// One table of a case, or its absence.
 #[derive(Clone, Copy)]
@@ -165,7 +149,7 @@ impl Reader {
     }
 
     /// A number, if it is there and allowed.
-    pub(crate) fn number(&self, section: Section<'_>, key: &str, allowed: Allowed) -> Option<f64> {
+    pub(crate) fn number(&self, section: Section<'_>, key: &str, allowed: Range) -> Option<f64> {
         let node = section.get(key)?;
         let value = match node.value {
             Value::Real(value) => value,
@@ -190,12 +174,7 @@ impl Reader {
     }
 
     /// A number that must be there.
-    pub(crate) fn required(
-        &self,
-        section: Section<'_>,
-        key: &str,
-        allowed: Allowed,
-    ) -> Option<f64> {
+    pub(crate) fn required(&self, section: Section<'_>, key: &str, allowed: Range) -> Option<f64> {
         if section.get(key).is_none() {
             self.missing(section, key, format!("give a number, {}", allowed.words));
         }
@@ -273,7 +252,7 @@ impl Reader {
         section: Section<'_>,
         key: &str,
         dimension: Dimension,
-        allowed: Allowed,
+        allowed: Range,
     ) -> Option<Quantity> {
         let node = section.get(key)?;
         let Value::Text(text) = &node.value else {
@@ -303,7 +282,7 @@ impl Reader {
         section: Section<'_>,
         key: &str,
         dimension: Dimension,
-        allowed: Allowed,
+        allowed: Range,
     ) -> Option<Quantity> {
         if section.get(key).is_none() {
             let hint = format!("give a {dimension} such as \"{}\"", dimension.example());

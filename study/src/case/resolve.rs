@@ -3,38 +3,28 @@
 use super::device;
 use super::document::Table;
 use super::error::{CaseError, Complaint};
+use super::keys::{self, ANY, Absent, Key, Kind, POISSON_SKALAK, POSITIVE, Range, names};
 use super::name::own_name;
 use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
-use super::reader::{ANY, Allowed, NOT_NEGATIVE, POSITIVE, Reader, Section};
+use super::reader::{Reader, Section};
 use super::stability;
 use super::{
     CatalogueCase, CatalogueEntry, ContactCase, DeviceCase, DiagramCase, ElementRange, Groups, Law,
     LoadedCase, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
 };
 use crate::closest::closest;
-use crate::units::{self, Dimension};
+use crate::units::{self, Quantity};
 
-const SHELL: &[&str] = &["law", "poisson", "b"];
-const DIMENSIONLESS: &[&str] =
-    &["bending", "pressure", "adhesion", "film", "surface_tension", "gas_exponent"];
-const RING_GROUPS: &[&str] = &["bending", "pressure", "gas_exponent"];
-const PHYSICAL: &[&str] = &[
-    "radius",
-    "young",
-    "thickness",
-    "chi",
-    "bending",
-    "pressure",
-    "adhesion",
-    "film",
-    "surface_tension",
-    "gas_exponent",
-];
-const MESH: &[&str] = &["elements", "grading"];
-const PATH: &[&str] = &["start", "end", "max_step", "min_step", "max_points", "eigenvalues"];
-const DIAGRAM: &[&str] = &["depth", "max_branches", "from", "to", "search"];
-const SEARCH: [&str; 2] = ["near-bifurcations", "none"];
-const MAP: &[&str] = &["from", "to"];
+const SHELL: &[&str] = &names(&keys::SHELL);
+const DIMENSIONLESS: &[&str] = &names(&keys::GROUPS);
+const RING_GROUPS: &[&str] = &names(&keys::RING_GROUPS);
+const PHYSICAL: &[&str] = &names(&keys::PHYSICAL);
+const MESH: &[&str] = &names(&keys::MESH);
+const PATH: &[&str] = &names(&keys::PATH);
+const DIAGRAM: &[&str] = &names(&keys::DIAGRAM);
+const MAP: &[&str] = &names(&keys::MAP);
+const DEVICE: &[&str] = &names(&keys::DEVICE);
+const STABILITY: &[&str] = &names(&keys::STABILITY);
 
 /// The problems that are no entries of the catalogue.
 pub(super) const BUILT_IN: [&str; 3] = ["contact", "two-plates", "ring-load"];
@@ -48,29 +38,19 @@ pub(super) const HOMES: &[(&str, &[&str])] = &[
     ("path", PATH),
     ("diagram", DIAGRAM),
     ("map", MAP),
-    ("device", device::KEYS),
-    ("stability", stability::KEYS),
+    ("device", DEVICE),
+    ("stability", STABILITY),
 ];
 
-const GAS_EXPONENT: f64 = 1.07;
-const ELEMENTS: ElementRange = ElementRange { default: 400, least: 8, most: 100_000 };
-const MAX_POINTS: usize = 5000;
 /// Steps shorter than this part of the way are lost in the rounding of the parameter.
 const SHORTEST: f64 = 1e-16;
 
-const POISSON: Allowed =
-    Allowed { holds: |x| x > -1.0 && x <= 0.5, words: "greater than -1 and at most 0.5" };
-const POISSON_SKALAK: Allowed =
-    Allowed { holds: |x| x > -1.0 && x < 1.0, words: "between -1 and 1 (C = nu/(1 - nu))" };
-const FRACTION: Allowed = Allowed { holds: |x| (0.0..=1.0).contains(&x), words: "from 0 to 1" };
-const GRADING: Allowed =
-    Allowed { holds: |x| (1.0..=1000.0).contains(&x), words: "from 1 (uniform) to 1000" };
-pub(super) const CONTACT_START: Allowed = Allowed {
+pub(super) const CONTACT_START: Range = Range {
     holds: |x| x > 1.0,
     words: "greater than 1: a contact case starts above the free shell, of radius 1",
 };
-const ANGLE: Allowed =
-    Allowed { holds: |x| x > 0.0 && x < 90.0, words: "an angle between 0 and 90 degrees" };
+const ANGLE: Range =
+    Range { holds: |x| x > 0.0 && x < 90.0, words: "an angle between 0 and 90 degrees" };
 
 /// Check a tree and fill in the defaults; `name` is the case's name unless it says one itself.
 ///
@@ -138,7 +118,7 @@ impl<'a> Resolver<'a> {
         };
         let diagram = path.as_ref().and_then(|path| self.diagram(path));
         let map = self.map();
-        let stability = stability::stability(self.reader, self.table("stability", stability::KEYS));
+        let stability = stability::stability(self.reader, self.table("stability", STABILITY));
         let case = ResolvedCase {
             name: name?,
             problem: problem?,
@@ -194,7 +174,7 @@ impl<'a> Resolver<'a> {
             }
         };
         let mesh = self.mesh();
-        let device = device::device(self.reader, self.table("device", device::KEYS));
+        let device = device::device(self.reader, self.table("device", DEVICE));
         let (start, end) = match device {
             Some(DeviceCase::Grip) => (CONTACT_START, POSITIVE),
             _ => (ANY, ANY),
@@ -215,9 +195,9 @@ impl<'a> Resolver<'a> {
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
         let groups = self.table("dimensionless", RING_GROUPS);
-        let bending = self.reader.required(groups, "bending", POSITIVE);
-        let pressure = self.or(groups, "pressure", NOT_NEGATIVE, 0.0);
-        let gas_exponent = self.or(groups, "gas_exponent", NOT_NEGATIVE, 0.0);
+        let bending = self.required(groups, &keys::BENDING);
+        let pressure = self.or_default(groups, &keys::RING_PRESSURE);
+        let gas_exponent = self.or_default(groups, &keys::RING_GAS_EXPONENT);
         let mesh = self.mesh();
         let path = self.path(None, ANGLE, ANGLE);
         let problem = match (shell, bending, pressure, gas_exponent, mesh) {
@@ -282,9 +262,13 @@ impl<'a> Resolver<'a> {
             self.reader.refuse(section, "law", node, why);
         }
         let skalak = law == Some("skalak");
-        let poisson =
-            self.or(section, "poisson", if skalak { POISSON_SKALAK } else { POISSON }, 0.5);
-        let b = self.reader.number(section, "b", FRACTION);
+        let poisson = if skalak {
+            let poisson = Key { kind: Kind::Number(POISSON_SKALAK), ..keys::POISSON };
+            self.or_default(section, &poisson)
+        } else {
+            self.or_default(section, &keys::POISSON)
+        };
+        let b = self.number(section, &keys::B);
         let law = match law? {
             "hooke" => Law::Hooke,
             "skalak" => Law::Skalak,
@@ -305,17 +289,17 @@ impl<'a> Resolver<'a> {
 
     /// `bending`, `pressure`, `surface_tension` and `gas_exponent`.
     pub(super) fn groups_without_film(&self, section: Section<'_>) -> Option<[f64; 4]> {
-        let bending = self.reader.required(section, "bending", POSITIVE);
-        let pressure = self.reader.required(section, "pressure", NOT_NEGATIVE);
-        let surface_tension = self.or(section, "surface_tension", NOT_NEGATIVE, 0.0);
-        let gas_exponent = self.or(section, "gas_exponent", NOT_NEGATIVE, GAS_EXPONENT);
+        let bending = self.required(section, &keys::BENDING);
+        let pressure = self.required(section, &keys::PRESSURE);
+        let surface_tension = self.or_default(section, &keys::SURFACE_TENSION);
+        let gas_exponent = self.or_default(section, &keys::GAS_EXPONENT);
         Some([bending?, pressure?, surface_tension?, gas_exponent?])
     }
 
     fn groups(&self, section: Section<'_>) -> Option<Groups> {
         let others = self.groups_without_film(section);
-        let adhesion = self.reader.required(section, "adhesion", POSITIVE);
-        let film = self.reader.required(section, "film", POSITIVE);
+        let adhesion = self.required(section, &keys::ADHESION);
+        let film = self.required(section, &keys::FILM);
         let [bending, pressure, surface_tension, gas_exponent] = others?;
         Some(Groups {
             bending,
@@ -332,20 +316,14 @@ impl<'a> Resolver<'a> {
         section: Section<'_>,
         poisson: f64,
     ) -> Option<(Groups, Option<Box<PhysicalCase>>)> {
-        let needed = |key, dimension, allowed| {
-            self.reader.required_quantity(section, key, dimension, allowed)
-        };
-        let radius = needed("radius", Dimension::Length, POSITIVE);
+        let needed = |key| self.required_quantity(section, key);
+        let radius = needed(&keys::RADIUS);
         let stiffness = self.stiffness(section);
-        let pressure = needed("pressure", Dimension::Pressure, NOT_NEGATIVE);
-        let adhesion = needed("adhesion", Dimension::Tension, POSITIVE);
-        let film = needed("film", Dimension::Length, POSITIVE);
-        let surface_tension = if section.get("surface_tension").is_some() {
-            needed("surface_tension", Dimension::Tension, NOT_NEGATIVE)
-        } else {
-            units::parse("0 N/m", Dimension::Tension).ok()
-        };
-        let gas_exponent = self.or(section, "gas_exponent", NOT_NEGATIVE, GAS_EXPONENT);
+        let pressure = needed(&keys::PHYSICAL_PRESSURE);
+        let adhesion = needed(&keys::PHYSICAL_ADHESION);
+        let film = needed(&keys::PHYSICAL_FILM);
+        let surface_tension = needed(&keys::PHYSICAL_SURFACE_TENSION);
+        let gas_exponent = self.or_default(section, &keys::GAS_EXPONENT);
         let physical = PhysicalCase {
             radius: radius?,
             stiffness: stiffness?,
@@ -357,18 +335,19 @@ impl<'a> Resolver<'a> {
         };
         let groups = dimensionless_of_physical(&physical, poisson);
         let checks = [
-            ("bending", groups.bending, POSITIVE),
-            ("pressure", groups.pressure, NOT_NEGATIVE),
-            ("adhesion", groups.adhesion, POSITIVE),
-            ("film", groups.film, POSITIVE),
-            ("surface_tension", groups.surface_tension, NOT_NEGATIVE),
+            (keys::BENDING, groups.bending),
+            (keys::PRESSURE, groups.pressure),
+            (keys::ADHESION, groups.adhesion),
+            (keys::FILM, groups.film),
+            (keys::SURFACE_TENSION, groups.surface_tension),
         ];
-        for (key, value, allowed) in checks {
-            if !(value.is_finite() && (allowed.holds)(value)) {
+        for (key, value) in checks {
+            if !key.range().contains(value) {
                 let why = Complaint::Conflict(format!(
-                    "these parameters make the dimensionless {key} {value:?}, which must be {}; \
+                    "these parameters make the dimensionless {} {value:?}, which must be {}; \
                      check their units",
-                    allowed.words
+                    key.name,
+                    key.range().words
                 ));
                 self.reader.push(section.origin, "physical".to_string(), None, why);
                 return None;
@@ -383,19 +362,18 @@ impl<'a> Resolver<'a> {
             .into_iter()
             .filter(|key| section.get(key).is_some())
             .collect();
-        let quantity =
-            |key, dimension| self.reader.required_quantity(section, key, dimension, POSITIVE);
+        let quantity = |key| self.required_quantity(section, key);
         let homogeneous = given.iter().any(|key| matches!(*key, "young" | "thickness"));
         let moduli = given.iter().any(|key| matches!(*key, "chi" | "bending"));
         match (homogeneous, moduli) {
             (true, false) => {
-                let young = quantity("young", Dimension::Pressure);
-                let thickness = quantity("thickness", Dimension::Length);
+                let young = quantity(&keys::YOUNG);
+                let thickness = quantity(&keys::THICKNESS);
                 Some(Stiffness::Homogeneous { young: young?, thickness: thickness? })
             }
             (false, true) => {
-                let chi = quantity("chi", Dimension::Tension);
-                let bending = quantity("bending", Dimension::Moment);
+                let chi = quantity(&keys::CHI);
+                let bending = quantity(&keys::PHYSICAL_BENDING);
                 Some(Stiffness::Moduli { chi: chi?, bending: bending? })
             }
             (true, true) => {
@@ -419,12 +397,10 @@ impl<'a> Resolver<'a> {
 
     pub(super) fn mesh(&self) -> Option<MeshCase> {
         let section = self.table("mesh", MESH);
-        let elements = self.elements(section, ELEMENTS);
-        let grading =
-            section.get("grading").map(|_| self.reader.number(section, "grading", GRADING));
-        let grading = match grading {
+        let elements = self.count(section, &keys::ELEMENTS);
+        let grading = match section.get("grading") {
             None => None,
-            Some(value) => Some(value?),
+            Some(_) => Some(self.number(section, &keys::GRADING)?),
         };
         Some(MeshCase { elements: elements?, grading })
     }
@@ -442,26 +418,20 @@ impl<'a> Resolver<'a> {
     pub(super) fn path(
         &self,
         default: Option<(f64, f64)>,
-        start_range: Allowed,
-        end_range: Allowed,
+        start_range: Range,
+        end_range: Range,
     ) -> Option<PathCase> {
         let section = self.table("path", PATH);
-        let needed = |key: &str, allowed: Allowed, default: Option<f64>| match default {
+        let needed = |key: &str, allowed: Range, default: Option<f64>| match default {
             Some(default) => self.or(section, key, allowed, default),
             None => self.reader.required(section, key, allowed),
         };
         let start = needed("start", start_range, default.map(|(start, _)| start));
         let end = needed("end", end_range, default.map(|(_, end)| end));
-        let max_step = self.reader.number(section, "max_step", POSITIVE);
-        let min_step = self.reader.number(section, "min_step", POSITIVE);
-        let max_points = match section.get("max_points") {
-            None => Some(MAX_POINTS),
-            Some(_) => self.reader.count(section, "max_points", 2, 10_000_000),
-        };
-        let eigenvalues = match section.get("eigenvalues") {
-            None => Some(0),
-            Some(_) => self.reader.count(section, "eigenvalues", 0, 200),
-        };
+        let max_step = self.number(section, &keys::MAX_STEP);
+        let min_step = self.number(section, &keys::MIN_STEP);
+        let max_points = self.count(section, &keys::MAX_POINTS);
+        let eigenvalues = self.count(section, &keys::EIGENVALUES);
         if let (Some(start), Some(end), Some(node)) = (start, end, section.get("end"))
             && start == end
         {
@@ -503,16 +473,12 @@ impl<'a> Resolver<'a> {
     fn diagram(&self, path: &PathCase) -> Option<DiagramCase> {
         let section = self.table("diagram", DIAGRAM);
         let default = DiagramCase::default();
-        let count = |key, least, most, default| match section.get(key) {
-            None => Some(default),
-            Some(_) => self.reader.count(section, key, least, most),
-        };
-        let depth = count("depth", 0, 100, default.depth);
-        let max_branches = count("max_branches", 1, 1_000_000, default.max_branches);
+        let depth = self.count(section, &keys::DEPTH);
+        let max_branches = self.count(section, &keys::MAX_BRANCHES);
         let (from, to) = (section.get("from"), section.get("to"));
         let bounds = if from.is_some() || to.is_some() {
-            let from = self.reader.required(section, "from", ANY);
-            let to = self.reader.required(section, "to", ANY);
+            let from = self.required(section, &keys::DIAGRAM_FROM);
+            let to = self.required(section, &keys::DIAGRAM_TO);
             Some((from?, to?))
         } else {
             None
@@ -530,28 +496,18 @@ impl<'a> Resolver<'a> {
         }
         let search = match section.get("search") {
             None => default.search,
-            Some(node) => {
-                let word = self.reader.text(section, "search")?;
-                if !SEARCH.contains(&word) {
-                    let suggestion = closest(word, SEARCH).map(ToString::to_string);
-                    let allowed = SEARCH.iter().map(ToString::to_string).collect();
-                    let why = Complaint::UnknownWord { allowed, suggestion };
-                    self.reader.refuse(section, "search", node, why);
-                    return None;
-                }
-                word == SEARCH[0]
-            }
+            Some(_) => self.word(section, &keys::SEARCH)? == "near-bifurcations",
         };
         Some(DiagramCase { depth: depth?, max_branches: max_branches?, within, search })
     }
 
     fn map(&self) -> Option<MapCase> {
         let section = self.table("map", MAP);
-        let given = |key: &str| match section.get(key) {
+        let given = |key: &Key| match section.get(key.name) {
             None => Some(None),
-            Some(_) => self.reader.number(section, key, ANY).map(Some),
+            Some(_) => self.number(section, key).map(Some),
         };
-        let (from, to) = (given("from")?, given("to")?);
+        let (from, to) = (given(&keys::MAP_FROM)?, given(&keys::MAP_TO)?);
         if let (Some(low), Some(high), Some(node)) = (from, to, section.get("to"))
             && low >= high
         {
@@ -559,6 +515,50 @@ impl<'a> Resolver<'a> {
             self.reader.refuse(section, "to", node, Complaint::OutOfRange { allowed });
         }
         Some(MapCase { from, to })
+    }
+
+    /// A number, if it is there and allowed.
+    pub(super) fn number(&self, section: Section<'_>, key: &Key) -> Option<f64> {
+        self.reader.number(section, key.name, key.range())
+    }
+
+    /// A number that must be there.
+    pub(super) fn required(&self, section: Section<'_>, key: &Key) -> Option<f64> {
+        self.reader.required(section, key.name, key.range())
+    }
+
+    /// A number with a default; `None` only when the number given is wrong.
+    fn or_default(&self, section: Section<'_>, key: &Key) -> Option<f64> {
+        match key.default {
+            Absent::Number(default) => self.or(section, key.name, key.range(), default),
+            _ => self.required(section, key),
+        }
+    }
+
+    /// A whole number with a default.
+    fn count(&self, section: Section<'_>, key: &Key) -> Option<usize> {
+        match (section.get(key.name), key.default) {
+            (None, Absent::Count(default)) => Some(default),
+            _ => {
+                let (least, most) = key.bounds();
+                self.reader.count(section, key.name, least, most)
+            }
+        }
+    }
+
+    /// One of the words of a key.
+    fn word(&self, section: Section<'_>, key: &Key) -> Option<&'static str> {
+        let Kind::Word(words) = key.kind else { return None };
+        self.reader.word(section, key.name, words)
+    }
+
+    /// A quantity that must be there unless it has a default.
+    fn required_quantity(&self, section: Section<'_>, key: &Key) -> Option<Quantity> {
+        let Kind::Quantity(dimension, range) = key.kind else { return None };
+        match (section.get(key.name), key.default) {
+            (None, Absent::Word(default)) => units::parse(default, dimension).ok(),
+            _ => self.reader.required_quantity(section, key.name, dimension, range),
+        }
     }
 
     /// A number in a range of the catalogue, with a default.
@@ -588,7 +588,7 @@ impl<'a> Resolver<'a> {
     }
 
     /// A number with a default; `None` only when the number given is wrong.
-    fn or(&self, section: Section<'_>, key: &str, allowed: Allowed, default: f64) -> Option<f64> {
+    fn or(&self, section: Section<'_>, key: &str, allowed: Range, default: f64) -> Option<f64> {
         match section.get(key) {
             None => Some(default),
             Some(_) => self.reader.number(section, key, allowed),

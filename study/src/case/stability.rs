@@ -2,20 +2,17 @@
 
 use super::StabilityCase;
 use super::error::Complaint;
+use super::keys::MAX_N;
 use super::reader::{Reader, Section};
 use crate::closest::closest;
-
-/// Its keys.
-pub(super) const KEYS: &[&str] = &["scan", "max_n"];
-/// What `max_n` may be: the bound of wave numbers is 22 at most in the shells studied.
-const WAVE_NUMBERS: (i64, i64) = (4, 1000);
 
 pub(super) fn stability(reader: &Reader, section: Section<'_>) -> Option<StabilityCase> {
     let StabilityCase::Full { mut max_n } = StabilityCase::default() else {
         return Some(StabilityCase::Axisymmetric);
     };
     if section.get("max_n").is_some() {
-        max_n = reader.count(section, "max_n", WAVE_NUMBERS.0, WAVE_NUMBERS.1)?;
+        let (least, most) = MAX_N.bounds();
+        max_n = reader.count(section, MAX_N.name, least, most)?;
     }
     let full = StabilityCase::Full { max_n };
     let Some(node) = section.get("scan") else { return Some(full) };

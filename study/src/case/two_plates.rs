@@ -2,14 +2,15 @@
 
 use super::document::Value;
 use super::error::Complaint;
-use super::reader::{ANY, POSITIVE, Section};
+use super::keys::{self, ANY, POSITIVE, names};
+use super::reader::Section;
 use super::resolve::{CONTACT_START, HOMES, Resolver};
 use super::{PathCase, PlateCase, ProblemCase, TwoPlatesCase};
 
 /// Keys of the whole shell; those of the films are the plates'.
-const GROUPS: &[&str] = &["bending", "pressure", "surface_tension", "gas_exponent"];
+const GROUPS: &[&str] = &names(&keys::GROUPS_WITHOUT_FILM);
 /// Keys of a plate.
-const PLATE: &[&str] = &["adhesion", "film", "device", "stiffness"];
+const PLATE: &[&str] = &names(&keys::PLATE);
 /// The tables of the plates.
 const TABLES: [(&str, &str); 2] = [("top", "plate.top"), ("bottom", "plate.bottom")];
 
@@ -114,13 +115,13 @@ impl<'a> Resolver<'a> {
     }
 
     fn plate(&self, section: Section<'a>, top: bool) -> Option<PlateCase> {
-        let adhesion = self.reader.required(section, "adhesion", POSITIVE);
-        let film = self.reader.required(section, "film", POSITIVE);
+        let adhesion = self.required(section, &keys::ADHESION);
+        let film = self.required(section, &keys::FILM);
         let device = match section.get("device") {
             None => Some(DEVICES[0]),
             Some(_) => self.reader.word(section, "device", &DEVICES),
         };
-        let stiffness = self.reader.number(section, "stiffness", POSITIVE);
+        let stiffness = self.number(section, &keys::STIFFNESS);
         let given = section.get("stiffness");
         let cantilever = device? == DEVICES[1];
         if let (true, false, Some(node)) = (cantilever, top, section.get("device")) {

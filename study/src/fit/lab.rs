@@ -2,7 +2,8 @@
 
 use crate::case::document::{self, Override};
 use crate::case::error::{Complaint, LoadError};
-use crate::case::reader::{Allowed, NOT_NEGATIVE, POSITIVE, Reader, Section};
+use crate::case::keys::{FRACTION, NOT_NEGATIVE, POISSON_RATIOS, POSITIVE, Range};
+use crate::case::reader::{Reader, Section};
 use crate::case::source;
 use crate::units::{self, Dimension};
 use identify::data::{Direction, Layout};
@@ -38,9 +39,6 @@ const PHYSICAL: [(Key, Dimension); 7] = [
     (Key::Pressure, Dimension::Pressure),
     (Key::SurfaceTension, Dimension::Tension),
 ];
-const POISSON: Allowed =
-    Allowed { holds: |x| x > -1.0 && x <= 0.5, words: "greater than -1 and at most 0.5" };
-const FRACTION: Allowed = Allowed { holds: |x| (0.0..=1.0).contains(&x), words: "from 0 to 1" };
 
 /// What is known and asked for, before the curve is seen.
 #[derive(Debug, Clone)]
@@ -137,13 +135,13 @@ fn read(reader: &Reader, root: Section<'_>) -> Option<Lab> {
     let shell = table("shell", SHELL);
     let names = LawName::ALL.map(LawName::name);
     lab.law = reader.word(shell, "law", &names).and_then(LawName::of);
-    let mut plain = |section, key: Key, allowed: Allowed| {
+    let mut plain = |section, key: Key, allowed: Range| {
         let value = reader.number(section, key.name(), allowed);
         let name = format!("{}_sd", key.name());
         let sd = reader.number(section, &name, POSITIVE);
         lab.take(key, value, sd);
     };
-    plain(shell, Key::Poisson, POISSON);
+    plain(shell, Key::Poisson, POISSON_RATIOS);
     plain(shell, Key::MooneyB, FRACTION);
     let physical = table("physical", &physical_keys);
     plain(physical, Key::GasExponent, NOT_NEGATIVE);
@@ -184,7 +182,7 @@ fn spring_constant_sd(reader: &Reader, section: Section<'_>, nominal: f64) -> Op
 fn layout(reader: &Reader, data: Section<'_>) -> Layout {
     let text = |key| reader.text(data, key).map(str::to_owned);
     let separator = reader.word(data, "separator", &["comma", "semicolon", "tab"]);
-    let sign = Allowed { holds: |x| x == 1.0 || x == -1.0, words: "1 or -1" };
+    let sign = Range { holds: |x| x == 1.0 || x == -1.0, words: "1 or -1" };
     Layout {
         force_column: text("force_column"),
         height_column: text("height_column"),

@@ -3,12 +3,13 @@
 use super::plan::{Axis, Setting};
 use crate::case::document::{Node, Origin, Value};
 use crate::case::error::Complaint;
-use crate::case::reader::{ANY, Allowed, Reader, Section};
+use crate::case::keys::{ANY, Range};
+use crate::case::reader::{Reader, Section};
 
 const KEYS: &[&str] = &["key", "values", "from", "to", "count", "scale", "zip"];
 const SCALES: &[&str] = &["linear", "log"];
 const MOST: i64 = 1_000_000;
-const NOT_ZERO: Allowed = Allowed { holds: |x| x != 0.0, words: "different from 0 for scale log" };
+const NOT_ZERO: Range = Range { holds: |x| x != 0.0, words: "different from 0 for scale log" };
 
 /// An axis as the file has it.
 pub(super) struct Read {

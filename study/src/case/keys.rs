@@ -1,0 +1,529 @@
+//! The keys of case files, each once: name, unit, default, range, and one line of help.
+//!
+//! The reader of case files, its messages and `docs/keys.md` are made from these.
+
+use super::{DeviceCase, Law, StabilityCase};
+use crate::units::Dimension;
+use std::fmt::Write as _;
+
+/// A range of numbers, in words too.
+#[derive(Debug, Clone, Copy)]
+pub struct Range {
+    /// Whether a finite number is allowed.
+    pub(crate) holds: fn(f64) -> bool,
+    /// The same in words: "must be …".
+    pub words: &'static str,
+}
+
+impl Range {
+    /// Whether a number is allowed.
+    pub fn contains(&self, value: f64) -> bool {
+        value.is_finite() && (self.holds)(value)
+    }
+}
+
+/// Any finite number.
+pub(crate) const ANY: Range = Range { holds: |_| true, words: "a finite number" };
+/// Greater than zero.
+pub(crate) const POSITIVE: Range = Range { holds: |x| x > 0.0, words: "positive and finite" };
+/// Zero or greater.
+pub(crate) const NOT_NEGATIVE: Range =
+    Range { holds: |x| x >= 0.0, words: "zero or positive, and finite" };
+/// From 0 to 1.
+pub(crate) const FRACTION: Range =
+    Range { holds: |x| (0.0..=1.0).contains(&x), words: "from 0 to 1" };
+const GRADINGS: Range =
+    Range { holds: |x| (1.0..=1000.0).contains(&x), words: "from 1 (uniform) to 1000" };
+/// Poisson's ratios of an elastic solid.
+pub(crate) const POISSON_RATIOS: Range =
+    Range { holds: |x| x > -1.0 && x <= 0.5, words: "greater than -1 and at most 0.5" };
+/// Poisson's ratios of Skalak's law.
+pub(crate) const POISSON_SKALAK: Range =
+    Range { holds: |x| x > -1.0 && x < 1.0, words: "between -1 and 1 (C = nu/(1 - nu))" };
+
+/// What a key holds.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub enum Kind {
+    /// A number.
+    Number(Range),
+    /// A whole number between two bounds, these included.
+    Count {
+        /// The least.
+        least: i64,
+        /// The largest.
+        most: i64,
+    },
+    /// A physical quantity with its unit, in quotes.
+    Quantity(Dimension, Range),
+    /// One of a few words.
+    Word(&'static [&'static str]),
+}
+
+/// What a key is where a file does not say it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Absent {
+    /// An error: the file must say it.
+    Required,
+    /// A number.
+    Number(f64),
+    /// A whole number.
+    Count(usize),
+    /// A word.
+    Word(&'static str),
+    /// Something that depends on other keys, in words.
+    Other(&'static str),
+}
+
+/// A key.
+#[derive(Debug, Clone, Copy)]
+pub struct Key {
+    /// Its name.
+    pub name: &'static str,
+    /// What it holds.
+    pub kind: Kind,
+    /// What numbers are measured in; empty for pure numbers, and for quantities, which say it themselves.
+    pub unit: &'static str,
+    /// What it is where a file does not say it.
+    pub default: Absent,
+    /// One line of help.
+    pub help: &'static str,
+}
+
+impl Key {
+    /// The range of its numbers.
+    pub(crate) fn range(&self) -> Range {
+        match self.kind {
+            Kind::Number(range) | Kind::Quantity(_, range) => range,
+            Kind::Count { .. } | Kind::Word(_) => ANY,
+        }
+    }
+
+    /// The bounds of its whole numbers.
+    pub(crate) fn bounds(&self) -> (i64, i64) {
+        match self.kind {
+            Kind::Count { least, most } => (least, most),
+            _ => (i64::MIN, i64::MAX),
+        }
+    }
+}
+
+/// A table of a case file.
+#[derive(Debug, Clone, Copy)]
+pub struct Keys {
+    /// Its name.
+    pub table: &'static str,
+    /// The problems whose cases have it.
+    pub problems: &'static str,
+    /// Its keys.
+    pub keys: &'static [Key],
+}
+
+/// The names of keys.
+pub(crate) const fn names<const N: usize>(keys: &[Key; N]) -> [&'static str; N] {
+    let mut names = [""; N];
+    let mut at = 0;
+    while at < N {
+        names[at] = keys[at].name;
+        at += 1;
+    }
+    names
+}
+
+const fn key(
+    name: &'static str,
+    kind: Kind,
+    unit: &'static str,
+    default: Absent,
+    help: &'static str,
+) -> Key {
+    Key { name, kind, unit, default, help }
+}
+
+const fn number(
+    name: &'static str,
+    range: Range,
+    unit: &'static str,
+    default: Absent,
+    help: &'static str,
+) -> Key {
+    key(name, Kind::Number(range), unit, default, help)
+}
+
+const fn count(
+    name: &'static str,
+    least: i64,
+    most: i64,
+    default: Absent,
+    help: &'static str,
+) -> Key {
+    key(name, Kind::Count { least, most }, "", default, help)
+}
+
+const fn quantity(
+    name: &'static str,
+    dimension: Dimension,
+    range: Range,
+    default: Absent,
+    help: &'static str,
+) -> Key {
+    key(name, Kind::Quantity(dimension, range), "", default, help)
+}
+
+use Absent::{Other, Required};
+
+/// `shell.law`.
+pub(crate) const LAW: Key =
+    key("law", Kind::Word(&Law::NAMES), "", Required, "Law of the membrane");
+/// `shell.poisson`.
+pub(crate) const POISSON: Key = number(
+    "poisson",
+    POISSON_RATIOS,
+    "",
+    Absent::Number(0.5),
+    "Poisson's ratio; Skalak's law takes any between -1 and 1",
+);
+/// `shell.b`.
+pub(crate) const B: Key = number(
+    "b",
+    FRACTION,
+    "",
+    Other("required by mooney-rivlin, unused else"),
+    "Mooney-Rivlin's constant; 0 is neo-Hookean",
+);
+/// The table `[shell]`.
+pub(crate) const SHELL: [Key; 3] = [LAW, POISSON, B];
+
+/// `dimensionless.bending`.
+pub(crate) const BENDING: Key =
+    number("bending", POSITIVE, "chi R0^2", Required, "Bending modulus k_b");
+/// `dimensionless.pressure`.
+pub(crate) const PRESSURE: Key =
+    number("pressure", NOT_NEGATIVE, "chi/R0", Required, "Ambient pressure P_A");
+/// `dimensionless.adhesion`.
+pub(crate) const ADHESION: Key =
+    number("adhesion", POSITIVE, "chi", Required, "Adhesion: depth w0 of the film's potential");
+/// `dimensionless.film`.
+pub(crate) const FILM: Key = number(
+    "film",
+    POSITIVE,
+    "R0",
+    Required,
+    "Film thickness delta_A at which the potential is least",
+);
+/// `dimensionless.surface_tension`.
+pub(crate) const SURFACE_TENSION: Key = number(
+    "surface_tension",
+    NOT_NEGATIVE,
+    "chi",
+    Absent::Number(0.0),
+    "Surface tension gamma_BW of the shell's outside",
+);
+/// `gas_exponent`.
+pub(crate) const GAS_EXPONENT: Key = number(
+    "gas_exponent",
+    NOT_NEGATIVE,
+    "",
+    Absent::Number(1.07),
+    "Polytropic exponent of the gas; 0 is constant pressure",
+);
+/// The table `[dimensionless]` of a contact case.
+pub(crate) const GROUPS: [Key; 6] =
+    [BENDING, PRESSURE, ADHESION, FILM, SURFACE_TENSION, GAS_EXPONENT];
+/// The same between two plates, whose films are their own.
+pub(crate) const GROUPS_WITHOUT_FILM: [Key; 4] = [BENDING, PRESSURE, SURFACE_TENSION, GAS_EXPONENT];
+/// `dimensionless.pressure` under a ring load.
+pub(crate) const RING_PRESSURE: Key = Key { default: Absent::Number(0.0), ..PRESSURE };
+/// `dimensionless.gas_exponent` under a ring load.
+pub(crate) const RING_GAS_EXPONENT: Key = Key { default: Absent::Number(0.0), ..GAS_EXPONENT };
+/// The table `[dimensionless]` under a ring load.
+pub(crate) const RING_GROUPS: [Key; 3] = [BENDING, RING_PRESSURE, RING_GAS_EXPONENT];
+
+const MODULI: Absent = Other("young and thickness, or chi and bending");
+/// `physical.radius`.
+pub(crate) const RADIUS: Key =
+    quantity("radius", Dimension::Length, POSITIVE, Required, "Radius R0 of the unstressed shell");
+/// `physical.young`.
+pub(crate) const YOUNG: Key =
+    quantity("young", Dimension::Pressure, POSITIVE, MODULI, "Young's modulus of the wall");
+/// `physical.thickness`.
+pub(crate) const THICKNESS: Key =
+    quantity("thickness", Dimension::Length, POSITIVE, MODULI, "Thickness of the wall");
+/// `physical.chi`.
+pub(crate) const CHI: Key = quantity(
+    "chi",
+    Dimension::Tension,
+    POSITIVE,
+    MODULI,
+    "Area modulus chi, E h of a homogeneous wall",
+);
+/// `physical.bending`.
+pub(crate) const PHYSICAL_BENDING: Key =
+    quantity("bending", Dimension::Moment, POSITIVE, MODULI, BENDING.help);
+/// `physical.pressure`.
+pub(crate) const PHYSICAL_PRESSURE: Key =
+    quantity("pressure", Dimension::Pressure, NOT_NEGATIVE, Required, PRESSURE.help);
+/// `physical.adhesion`.
+pub(crate) const PHYSICAL_ADHESION: Key =
+    quantity("adhesion", Dimension::Tension, POSITIVE, Required, ADHESION.help);
+/// `physical.film`.
+pub(crate) const PHYSICAL_FILM: Key =
+    quantity("film", Dimension::Length, POSITIVE, Required, FILM.help);
+/// `physical.surface_tension`.
+pub(crate) const PHYSICAL_SURFACE_TENSION: Key = quantity(
+    "surface_tension",
+    Dimension::Tension,
+    NOT_NEGATIVE,
+    Absent::Word("0 N/m"),
+    SURFACE_TENSION.help,
+);
+/// The table `[physical]`.
+pub(crate) const PHYSICAL: [Key; 10] = [
+    RADIUS,
+    YOUNG,
+    THICKNESS,
+    CHI,
+    PHYSICAL_BENDING,
+    PHYSICAL_PRESSURE,
+    PHYSICAL_ADHESION,
+    PHYSICAL_FILM,
+    PHYSICAL_SURFACE_TENSION,
+    GAS_EXPONENT,
+];
+
+/// `mesh.elements`.
+pub(crate) const ELEMENTS: Key =
+    count("elements", 8, 100_000, Absent::Count(400), "Number of elements along the meridian");
+/// `mesh.grading`.
+pub(crate) const GRADING: Key = number(
+    "grading",
+    GRADINGS,
+    "",
+    Other("uniform; under a ring load the problem's own"),
+    "Longest element over shortest, shrinking towards the pole",
+);
+/// The table `[mesh]`.
+pub(crate) const MESH: [Key; 2] = [ELEMENTS, GRADING];
+
+/// `path.start`.
+pub(crate) const START: Key = number(
+    "start",
+    ANY,
+    "the parameter's own",
+    Other("required; problems of the catalogue have their own"),
+    "Where the continued parameter starts",
+);
+/// `path.end`.
+pub(crate) const END: Key = Key { name: "end", help: "Where it ends", ..START };
+/// `path.max_step`.
+pub(crate) const MAX_STEP: Key = number(
+    "max_step",
+    POSITIVE,
+    "the problem's metric",
+    Other("the tracer's own"),
+    "Longest step along the branch",
+);
+/// `path.min_step`.
+pub(crate) const MIN_STEP: Key =
+    Key { name: "min_step", help: "Shortest step along the branch", ..MAX_STEP };
+/// `path.max_points`.
+pub(crate) const MAX_POINTS: Key =
+    count("max_points", 2, 10_000_000, Absent::Count(5000), "Most points of a branch");
+/// `path.eigenvalues`.
+pub(crate) const EIGENVALUES: Key = count(
+    "eigenvalues",
+    0,
+    200,
+    Absent::Count(0),
+    "Eigenvalues to compute at every point, the most unstable ones",
+);
+/// The table `[path]`.
+pub(crate) const PATH: [Key; 6] = [START, END, MAX_STEP, MIN_STEP, MAX_POINTS, EIGENVALUES];
+
+/// `diagram.depth`.
+pub(crate) const DEPTH: Key = count(
+    "depth",
+    0,
+    100,
+    Absent::Count(2),
+    "Most branch points between a branch and the first one",
+);
+/// `diagram.max_branches`.
+pub(crate) const MAX_BRANCHES: Key =
+    count("max_branches", 1, 1_000_000, Absent::Count(1000), "Most branches");
+/// `diagram.from`.
+pub(crate) const DIAGRAM_FROM: Key = number(
+    "from",
+    ANY,
+    "the parameter's own",
+    Other("from path.start to path.end"),
+    "Bound of the parameter, inside which the first branch is followed both ways",
+);
+/// `diagram.to`.
+pub(crate) const DIAGRAM_TO: Key = Key { name: "to", help: "The other bound", ..DIAGRAM_FROM };
+/// `diagram.search`.
+pub(crate) const SEARCH: Key = key(
+    "search",
+    Kind::Word(&["near-bifurcations", "none"]),
+    "",
+    Absent::Word("near-bifurcations"),
+    "Where disconnected branches are sought",
+);
+/// The table `[diagram]`.
+pub(crate) const DIAGRAM: [Key; 5] = [DEPTH, MAX_BRANCHES, DIAGRAM_FROM, DIAGRAM_TO, SEARCH];
+
+/// `map.from`.
+pub(crate) const MAP_FROM: Key = number(
+    "from",
+    ANY,
+    "the second parameter's own",
+    Other("a tenth of the case's value"),
+    "Lower bound of the second parameter",
+);
+/// `map.to`.
+pub(crate) const MAP_TO: Key = Key {
+    name: "to",
+    default: Other("ten times the case's value"),
+    help: "Upper bound of the second parameter",
+    ..MAP_FROM
+};
+/// The table `[map]`.
+pub(crate) const MAP: [Key; 2] = [MAP_FROM, MAP_TO];
+
+/// `device.kind`.
+pub(crate) const DEVICE_KIND: Key = key(
+    "kind",
+    Kind::Word(&DeviceCase::NAMES),
+    "",
+    Other("grip without the table"),
+    "What holds the plates",
+);
+/// `device.stiffness`.
+pub(crate) const STIFFNESS: Key = number(
+    "stiffness",
+    POSITIVE,
+    "sqrt(chi k_b)/R0",
+    Other("required by a cantilever, an error else"),
+    "Stiffness of a cantilever, per plate",
+);
+/// The table `[device]`.
+pub(crate) const DEVICE: [Key; 2] = [DEVICE_KIND, STIFFNESS];
+
+/// `stability.scan`.
+pub(crate) const SCAN: Key = key(
+    "scan",
+    Kind::Word(&StabilityCase::NAMES),
+    "",
+    Absent::Word(StabilityCase::NAMES[0]),
+    "Which modes are counted besides those with the symmetries of the state",
+);
+/// `stability.max_n`; the bound of wave numbers is 22 at most in the shells studied.
+pub(crate) const MAX_N: Key =
+    count("max_n", 4, 1000, Absent::Count(40), "Most waves around the axis");
+/// The table `[stability]`.
+pub(crate) const STABILITY: [Key; 2] = [SCAN, MAX_N];
+
+/// `device` of a plate.
+pub(crate) const PLATE_DEVICE: Key = key(
+    "device",
+    Kind::Word(&["grip", "cantilever"]),
+    "",
+    Absent::Word("grip"),
+    "What holds the plate; only the upper one may hang on a cantilever",
+);
+/// The tables `[plate.top]` and `[plate.bottom]`.
+pub(crate) const PLATE: [Key; 4] = [ADHESION, FILM, PLATE_DEVICE, STIFFNESS];
+
+/// Every table of a case file with its keys, those of catalogue problems' own parameters left out: these
+/// are in [`super::CatalogueEntry`].
+pub const TABLES: [Keys; 13] = [
+    Keys { table: "shell", problems: "contact, two-plates, ring-load", keys: &SHELL },
+    Keys { table: "dimensionless", problems: "contact", keys: &GROUPS },
+    Keys { table: "dimensionless", problems: "two-plates", keys: &GROUPS_WITHOUT_FILM },
+    Keys { table: "dimensionless", problems: "ring-load", keys: &RING_GROUPS },
+    Keys { table: "physical", problems: "contact", keys: &PHYSICAL },
+    Keys { table: "plate.top", problems: "two-plates", keys: &PLATE },
+    Keys { table: "plate.bottom", problems: "two-plates", keys: &PLATE },
+    Keys { table: "device", problems: "contact", keys: &DEVICE },
+    Keys { table: "mesh", problems: "all with a mesh", keys: &MESH },
+    Keys { table: "path", problems: "all", keys: &PATH },
+    Keys { table: "diagram", problems: "all", keys: &DIAGRAM },
+    Keys { table: "map", problems: "all", keys: &MAP },
+    Keys { table: "stability", problems: "contact, two-plates", keys: &STABILITY },
+];
+
+/// The tables as Markdown, as `docs/keys.md` has them.
+pub fn markdown() -> String {
+    let mut out = String::new();
+    for Keys { table, problems, keys } in TABLES {
+        let _ = writeln!(out, "\n## `[{table}]`: {problems}\n");
+        let _ =
+            writeln!(out, "| key | what it is | value | unit | default |\n|---|---|---|---|---|");
+        for key in keys {
+            let (value, unit) = match key.kind {
+                Kind::Number(range) => (range.words.to_owned(), key.unit.to_owned()),
+                Kind::Count { least, most } => (format!("{least} to {most}"), String::new()),
+                Kind::Quantity(dimension, range) => (
+                    range.words.to_owned(),
+                    format!("{dimension}, such as \"{}\"", dimension.example()),
+                ),
+                Kind::Word(words) => (words.join(", "), String::new()),
+            };
+            let default = match key.default {
+                Required => "required".to_owned(),
+                Absent::Number(value) => value.to_string(),
+                Absent::Count(value) => value.to_string(),
+                Absent::Word(word) | Other(word) => word.to_owned(),
+            };
+            let _ =
+                writeln!(out, "| `{}` | {} | {value} | {unit} | {default} |", key.name, key.help);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+    use std::path::Path;
+
+    #[test]
+    fn defaults_are_allowed() {
+        for Keys { table, keys, .. } in TABLES {
+            for key in keys {
+                let good = match (key.default, key.kind) {
+                    (Absent::Number(value), Kind::Number(range)) => range.contains(value),
+                    (Absent::Count(value), Kind::Count { least, most }) => {
+                        (least..=most).contains(&(value as i64))
+                    }
+                    (Absent::Word(word), Kind::Word(words)) => words.contains(&word),
+                    (Absent::Word(text), Kind::Quantity(dimension, range)) => {
+                        crate::units::parse(text, dimension).is_ok_and(|q| range.contains(q.si))
+                    }
+                    (Required | Other(_), _) => true,
+                    _ => false,
+                };
+                assert!(good, "{table}.{}: {:?}", key.name, key.default);
+            }
+        }
+    }
+
+    #[test]
+    fn a_key_stands_once_in_a_table() {
+        for Keys { table, keys, .. } in TABLES {
+            let names: BTreeSet<_> = keys.iter().map(|key| key.name).collect();
+            assert_eq!(names.len(), keys.len(), "{table}");
+        }
+    }
+
+    #[test]
+    fn the_book_has_these_keys() {
+        // beside the workspace only: a package alone has no book
+        let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/keys.md");
+        if let Ok(text) = std::fs::read_to_string(book) {
+            assert!(text.ends_with(&markdown()), "docs/keys.md is out of date:\n{}", markdown());
+        }
+    }
+}
