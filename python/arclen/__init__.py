@@ -26,8 +26,9 @@ Cases of shells between plates, and a catalogue of classical problems, are there
 from ._arclen import EngineError as ArclenError
 from ._arclen import __version__
 from ._branch import Branch, Diagram, Event, Point, Solutions
+from ._case import Case, cases
 from ._problem import InterruptedWarning, Problem
-from ._study import Case, CaseBranch, Cycle, Map, cases, cycle, diagram, map, trace
+from ._study import CaseBranch, Cycle, Map, cycle, diagram, map, trace
 from ._sweep import Study, study
 
 __all__ = [

@@ -345,3 +345,54 @@ def mass(value: Any, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None
         np.asarray(columns, dtype=np.int64),
         vector(data, "mass") if np.size(data) else np.zeros(0),
     )
+
+
+def names(names: Any, what: str) -> list[str]:
+    try:
+        result = list(names)
+    except TypeError:
+        raise TypeError(f"{what}: {names!r} is not a list of names") from None
+    for name in result:
+        if not isinstance(name, str):
+            raise TypeError(f"{what}: {name!r} is not a name")
+        if not name or name in ("s", "dp_ds", "unstable", "certified") or name.startswith("u["):
+            raise ValueError(f"{what}: {name!r} cannot be a name: it is empty, or a column's")
+        if result.count(name) > 1:
+            raise ValueError(f"{what}: {name!r} occurs twice")
+    return result
+
+
+def count(value: Any, what: str) -> int:
+    value = index(value, what)
+    if not 0 <= value < 2**53:
+        raise ValueError(f"{what} is {value}; it must not be negative, nor beyond 2**53")
+    return value
+
+
+def states(value: Any, what: str) -> list[Any]:
+    try:
+        return list(value)
+    except TypeError:
+        raise TypeError(f"{what}: {value!r} is not a list of arrays") from None
+
+
+def progress(progress: Any) -> Callable[..., Any] | None:
+    """What is called after every point."""
+    if progress is None or progress is False:
+        return None
+    if callable(progress):
+        return progress
+    if progress is not True:
+        raise TypeError(f"progress: {progress!r} is neither a bool nor callable")
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        return None
+    bar = tqdm(unit=" points")
+
+    def update(points: int, events: int, p: float, s: float) -> bool:
+        bar.update(points - bar.n)
+        bar.set_postfix(events=events, p=f"{p:.6g}", refresh=False)
+        return False
+
+    return update

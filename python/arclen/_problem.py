@@ -106,7 +106,7 @@ class Problem:
             raise TypeError(f"jac: {jac!r} cannot be called")
         if isinstance(parameters, str):
             parameters = [parameters]
-        self.parameters: list[str] = _names(parameters, "parameters")
+        self.parameters: list[str] = convert.names(parameters, "parameters")
         if not self.parameters:
             raise ValueError("parameters: a problem needs at least one")
         self.f = f
@@ -125,7 +125,7 @@ class Problem:
         for name, function in self.observe.items():
             if not callable(function):
                 raise TypeError(f"observe[{name!r}]: {function!r} cannot be called")
-        _names([*self.parameters, *self.observe], "parameters and observables")
+        convert.names([*self.parameters, *self.observe], "parameters and observables")
         self.scales = {}
         for name, scale in (scales or {}).items():
             convert.one_of(name, self.parameters, "parameter")
@@ -370,8 +370,8 @@ class Problem:
         trace, watches, progress = self._traced(settings, "diagram")
         whole: dict[str, Any] = {
             "trace": trace,
-            "depth": _count(depth, "depth"),
-            "max_branches": _count(max_branches, "max_branches"),
+            "depth": convert.count(depth, "depth"),
+            "max_branches": convert.count(max_branches, "max_branches"),
         }
         if not disconnected:
             whole["search"] = None
@@ -410,7 +410,7 @@ class Problem:
         """
         u, p = convert.vector(u0, "u0"), convert.named(p0, self.parameters, "p0")
         tolerance = convert.finite(tolerance, "tolerance")
-        count = _count(max_iterations, "max_iterations")
+        count = convert.count(max_iterations, "max_iterations")
         found = self._compute(
             u, p, lambda engine: engine.newton(u.tolist(), p.tolist(), tolerance, count), _same
         )
@@ -448,8 +448,8 @@ max_attempts : optional
         p = convert.named(p0, self.parameters, "p0")
         options = convert.settings(settings, convert.DEFLATION, "deflate")
         branches = list(branches)
-        known = [convert.vector(u, "known") for u in _states(known, "known")]
-        starts = [convert.vector(u, "starts") for u in _states(starts, "starts")]
+        known = [convert.vector(u, "known") for u in convert.states(known, "known")]
+        starts = [convert.vector(u, "starts") for u in convert.states(starts, "starts")]
         for branch in branches:
             if not isinstance(branch, Branch):
                 raise TypeError(f"branches: {branch!r} is no branch")
@@ -520,7 +520,7 @@ max_attempts : optional
             Whether no more unstable eigenvalue is missing.
         """
         u, p = convert.vector(u, "u"), convert.named(p, self.parameters, "p")
-        number = min(_count(count, "count"), u.size)
+        number = min(convert.count(count, "count"), u.size)
         found = self._compute(
             u, p, lambda engine: engine.modes(u.tolist(), p.tolist(), number), _same
         )
@@ -569,7 +569,7 @@ max_attempts : optional
             settings.pop("stop_at", {}),
             settings.pop("values", ()),
         )
-        progress = _progress(settings.pop("progress", None))
+        progress = convert.progress(settings.pop("progress", None))
         return convert.settings(settings, convert.SETTINGS, where), watched, progress
 
     def _place(self, point: Point) -> tuple[np.ndarray, np.ndarray]:
@@ -678,35 +678,6 @@ def _same(found: Any) -> Any:
     return found
 
 
-def _names(names: Any, what: str) -> list[str]:
-    try:
-        result = list(names)
-    except TypeError:
-        raise TypeError(f"{what}: {names!r} is not a list of names") from None
-    for name in result:
-        if not isinstance(name, str):
-            raise TypeError(f"{what}: {name!r} is not a name")
-        if not name or name in ("s", "dp_ds", "unstable", "certified") or name.startswith("u["):
-            raise ValueError(f"{what}: {name!r} cannot be a name: it is empty, or a column's")
-        if result.count(name) > 1:
-            raise ValueError(f"{what}: {name!r} occurs twice")
-    return result
-
-
-def _count(value: Any, what: str) -> int:
-    value = convert.index(value, what)
-    if not 0 <= value < 2**53:
-        raise ValueError(f"{what} is {value}; it must not be negative, nor beyond 2**53")
-    return value
-
-
-def _states(value: Any, what: str) -> list[Any]:
-    try:
-        return list(value)
-    except TypeError:
-        raise TypeError(f"{what}: {value!r} is not a list of arrays") from None
-
-
 def _read_only(x: np.ndarray) -> np.ndarray:
     copy = x.copy()
     copy.flags.writeable = False
@@ -718,25 +689,3 @@ def _origin(value: Any) -> dict[str, Any]:
         return {"kind": value}
     ((kind, rest),) = value.items()
     return {"kind": kind, **rest}
-
-
-def _progress(progress: Any) -> Callable[..., Any] | None:
-    """What is called after every point."""
-    if progress is None or progress is False:
-        return None
-    if callable(progress):
-        return progress
-    if progress is not True:
-        raise TypeError(f"progress: {progress!r} is neither a bool nor callable")
-    try:
-        from tqdm.auto import tqdm
-    except ImportError:
-        return None
-    bar = tqdm(unit=" points")
-
-    def update(points: int, events: int, p: float, s: float) -> bool:
-        bar.update(points - bar.n)
-        bar.set_postfix(events=events, p=f"{p:.6g}", refresh=False)
-        return False
-
-    return update
