@@ -31,7 +31,7 @@ pub(super) fn cycle(arguments: &CycleArguments) -> Exit {
         Err(exit) => return exit,
     };
     let mut observer = Observer::new(Some(case.path), arguments.output.quiet);
-    let outcome = run_cycle(&case, arguments.report, &mut |progress| observer.hear(progress));
+    let outcome = run_cycle(&case, arguments.report, &mut |progress| observer.update(progress));
     observer.finish();
     match outcome {
         Err(error) => {

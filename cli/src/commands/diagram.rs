@@ -71,7 +71,7 @@ pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
         None => &mut nothing,
     };
     let outcome =
-        run_diagram(&case, arguments.report, saved, keep, &mut |at| observer.hear_of_diagram(at));
+        run_diagram(&case, arguments.report, saved, keep, &mut |at| observer.update_diagram(at));
     observer.finish();
     let result = match outcome {
         Ok(result) => result,

@@ -28,7 +28,7 @@ pub(super) fn map(arguments: &MapArguments) -> Exit {
         Err(exit) => return exit,
     };
     let mut observer = Observer::new(Some(case.path), arguments.output.quiet);
-    let outcome = run_map(&case, &arguments.over, &mut |progress| observer.hear(progress));
+    let outcome = run_map(&case, &arguments.over, &mut |progress| observer.update(progress));
     observer.finish();
     match outcome {
         Err(error) => {

@@ -1,4 +1,4 @@
-//! Progress of a trace on a terminal, and the wish to stop.
+//! Progress of a trace on a terminal, and requests to stop.
 
 use crate::terminal;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -11,19 +11,19 @@ use study::run::{DiagramProgress, Progress};
 
 const LENGTH: u64 = 1000;
 
-/// Signals that come closer than this are one wish: a terminal that closes and a system that shuts
+/// Signals that come closer than this are one request: a terminal that closes and a system that shuts
 /// down send several.
-const ONE_WISH: Duration = Duration::from_millis(500);
+const ONE_REQUEST: Duration = Duration::from_millis(500);
 
 /// A flag that Ctrl-C sets, and so do SIGTERM and SIGHUP.
 pub(super) fn stop_on_signals() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let heard = Arc::clone(&stop);
     let mut first: Option<Instant> = None;
-    // the second wish does not wait for the current step
+    // the second request does not wait for the current step
     let handler = move || {
         heard.store(true, Ordering::SeqCst);
-        if first.get_or_insert_with(Instant::now).elapsed() > ONE_WISH {
+        if first.get_or_insert_with(Instant::now).elapsed() > ONE_REQUEST {
             std::process::exit(130);
         }
     };
@@ -57,8 +57,8 @@ impl Observer {
         Observer { bar, path, farthest: 0.0, stop }
     }
 
-    /// Hear of a point; say whether to go on.
-    pub(super) fn hear(&mut self, progress: Progress) -> ControlFlow<()> {
+    /// Shows a point; whether to go on.
+    pub(super) fn update(&mut self, progress: Progress) -> ControlFlow<()> {
         if let (Some(bar), Some(path)) = (&self.bar, self.path) {
             let PathCase { start, end, .. } = path;
             let done = ((progress.parameter - start) / (end - start)).clamp(0.0, 1.0);
@@ -70,11 +70,11 @@ impl Observer {
                 progress.points, progress.events, progress.parameter
             ));
         }
-        self.wish()
+        self.flow()
     }
 
-    /// Hear of a point of a diagram; say whether to go on.
-    pub(super) fn hear_of_diagram(&self, progress: DiagramProgress) -> ControlFlow<()> {
+    /// Shows a point of a diagram; whether to go on.
+    pub(super) fn update_diagram(&self, progress: DiagramProgress) -> ControlFlow<()> {
         if let Some(bar) = &self.bar {
             bar.set_message(format!(
                 "{} branches, {} waiting; on this one {} points, at {:.5}",
@@ -84,10 +84,10 @@ impl Observer {
                 progress.branch.parameter
             ));
         }
-        self.wish()
+        self.flow()
     }
 
-    /// The wish to stop, for work that goes on elsewhere.
+    /// The request to stop, for work that goes on elsewhere.
     pub(super) fn stop(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.stop)
     }
@@ -99,7 +99,7 @@ impl Observer {
         }
     }
 
-    fn wish(&self) -> ControlFlow<()> {
+    fn flow(&self) -> ControlFlow<()> {
         if self.stop.load(Ordering::SeqCst) {
             ControlFlow::Break(())
         } else {

@@ -31,7 +31,7 @@ pub(super) fn trace(arguments: &TraceArguments) -> Exit {
     };
     let mut observer = Observer::new(Some(case.path), arguments.output.quiet);
     let run = if arguments.report { run_trace_reported } else { run_trace };
-    let outcome = run(&case, &mut |progress| observer.hear(progress));
+    let outcome = run(&case, &mut |progress| observer.update(progress));
     observer.finish();
     match outcome {
         Err(error) => {

@@ -75,7 +75,7 @@ impl Reader {
     }
 
     /// Whether nothing was wrong so far.
-    pub(crate) fn is_content(&self) -> bool {
+    pub(crate) fn has_no_errors(&self) -> bool {
         self.errors.borrow().is_empty()
     }
 

@@ -67,7 +67,7 @@ pub(crate) fn resolve(
         Resolver { reader: &reader, root: Section::root(tree), notes: Vec::new(), catalogue };
     let loaded = resolver.run(name);
     match loaded {
-        Some(loaded) if reader.is_content() => Ok(loaded),
+        Some(loaded) if reader.has_no_errors() => Ok(loaded),
         _ => Err(reader.into_errors()),
     }
 }

@@ -91,7 +91,7 @@ pub fn load(path: Option<&Path>, overrides: &[Override]) -> Result<Lab, LoadErro
     let reader = Reader::new(&file);
     let lab = read(&reader, Section::root(&tree));
     match lab {
-        Some(lab) if reader.is_content() => Ok(lab),
+        Some(lab) if reader.has_no_errors() => Ok(lab),
         _ => Err(LoadError::Invalid(reader.into_errors())),
     }
 }

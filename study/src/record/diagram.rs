@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// Where a branch begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum From {
+pub enum BranchOrigin {
     /// At the start of the case.
     Start,
     /// At a special point of another branch.
@@ -39,24 +39,24 @@ pub enum From {
     },
 }
 
-impl Serialize for From {
+impl Serialize for BranchOrigin {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
-            From::Start => serializer.serialize_none(),
-            From::Switch { branch, event } => {
+            BranchOrigin::Start => serializer.serialize_none(),
+            BranchOrigin::Switch { branch, event } => {
                 let mut map = serializer.serialize_map(Some(2))?;
                 map.serialize_entry("branch", branch)?;
                 map.serialize_entry("event", event)?;
                 map.end()
             }
-            From::Deflation { branch, parameter } => {
+            BranchOrigin::Deflation { branch, parameter } => {
                 let mut map = serializer.serialize_map(Some(3))?;
                 map.serialize_entry("branch", branch)?;
                 map.serialize_entry("deflation", &true)?;
                 map.serialize_entry("parameter", parameter)?;
                 map.end()
             }
-            From::Springs { branch, parameter } => {
+            BranchOrigin::Springs { branch, parameter } => {
                 let mut map = serializer.serialize_map(Some(3))?;
                 map.serialize_entry("branch", branch)?;
                 map.serialize_entry("springs", &true)?;
@@ -103,7 +103,7 @@ pub struct BranchRecord {
     /// Its number.
     pub id: usize,
     /// Where it begins.
-    pub from: From,
+    pub from: BranchOrigin,
     /// How many branch points lie between it and the first.
     pub depth: usize,
     /// What its states look like, where a diagram has several kinds.
@@ -284,8 +284,8 @@ struct JointOf<'a>(&'a Joint);
 impl Serialize for JointOf<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let passed = self.0.passed.iter();
-        let passed: Vec<From> =
-            passed.map(|&(branch, event)| From::Switch { branch, event }).collect();
+        let passed: Vec<BranchOrigin> =
+            passed.map(|&(branch, event)| BranchOrigin::Switch { branch, event }).collect();
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("passed", &passed)?;
         map.serialize_entry("begun", &self.0.begun)?;
@@ -300,10 +300,10 @@ pub fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> String 
     let mut rows = vec![titles.map(str::to_owned).to_vec()];
     for one in &result.branches {
         let from = match one.from {
-            From::Start => "start".to_owned(),
-            From::Switch { branch, event } => format!("{branch}, event {event}"),
-            From::Deflation { branch, .. } => format!("beside {branch}"),
-            From::Springs { branch, .. } => format!("two states of {branch}"),
+            BranchOrigin::Start => "start".to_owned(),
+            BranchOrigin::Switch { branch, event } => format!("{branch}, event {event}"),
+            BranchOrigin::Deflation { branch, .. } => format!("beside {branch}"),
+            BranchOrigin::Springs { branch, .. } => format!("two states of {branch}"),
         };
         let (low, high) = range(&one.curve.x);
         let mut ends = one.trace.stopped_because.to_string();

@@ -20,7 +20,7 @@ mod tests;
 pub(crate) use column::RING;
 pub use cycle::{CycleResult, FoldRecord, JumpRecord, PathModes, PathRow, ReportedCycle};
 pub use cycle::{StretchRecord, Way, cycle_json, cycle_summary, cycle_table};
-pub use diagram::{BranchRecord, DiagramResult, From, NearRecord, Symmetry};
+pub use diagram::{BranchOrigin, BranchRecord, DiagramResult, NearRecord, Symmetry};
 pub use diagram::{diagram_json, diagram_summary};
 pub use events::events_json;
 pub use map::{MapCurve, MapPoint, MapResult, map_json, map_summary};

@@ -10,7 +10,7 @@ use super::stability::Stability;
 use super::{Progress, RunError, contact, two_plates};
 use crate::case::{ContactCase, ResolvedCase};
 use crate::record::view::Curve;
-use crate::record::{BranchRecord, From, Symmetry, TraceResult};
+use crate::record::{BranchOrigin, BranchRecord, Symmetry, TraceResult};
 use continuation::diagram::Joint;
 use continuation::{Branch, Settings, StopReason};
 use shell_contact::two_plates::{
@@ -180,7 +180,7 @@ impl Search<'_, '_> {
             let Ok(traced) = left else { continue };
             let id = self.next_id();
             self.symmetric.forks[k].begun.push(id);
-            self.take(traced, From::Switch { branch, event }, depth + 1);
+            self.take(traced, BranchOrigin::Switch { branch, event }, depth + 1);
         }
     }
 
@@ -224,13 +224,13 @@ impl Search<'_, '_> {
                     break;
                 };
                 let depth = 1;
-                self.take(traced, From::Springs { branch: k, parameter: state.z0 }, depth);
+                self.take(traced, BranchOrigin::Springs { branch: k, parameter: state.z0 }, depth);
             }
         }
     }
 
     /// Adds a branch to what was found, and to the forks that it meets.
-    fn take(&mut self, branch: Branch, mut from: From, depth: usize) {
+    fn take(&mut self, branch: Branch, mut from: BranchOrigin, depth: usize) {
         let id = self.next_id();
         // counts first: they put special points among those that the branch has
         let (done, observer) = (self.next_id(), &mut *self.observer);
@@ -260,8 +260,8 @@ impl Search<'_, '_> {
                 (fork.z0 - point.p).abs() < AT_FORK && (other - force).abs() < 0.01 * force.abs()
             });
             let Some(fork) = nearest.last() else { continue };
-            if matches!(from, From::Springs { .. }) {
-                from = From::Switch { branch: fork.branch, event: fork.event };
+            if matches!(from, BranchOrigin::Springs { .. }) {
+                from = BranchOrigin::Switch { branch: fork.branch, event: fork.event };
                 fork.begun.push(id);
             } else {
                 fork.ended.push((id, point.event.map(|event| stability.renumbered(event))));

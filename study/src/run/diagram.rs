@@ -5,7 +5,7 @@ use super::stability::Stability;
 use super::two_plates::{BetweenPlates, WithPlates};
 use crate::case::ResolvedCase;
 use crate::record::view::{Curve, Mark};
-use crate::record::{BranchRecord, DiagramResult, From, NearRecord, TraceResult};
+use crate::record::{BranchOrigin, BranchRecord, DiagramResult, NearRecord, TraceResult};
 use continuation::diagram::{
     Diagram, DiagramBranch, DiagramError, DiagramSettings, DiagramStop, Explorer, Origin, Search,
     Unfinished,
@@ -236,9 +236,11 @@ pub(super) fn result(
         let Presented { trace, curve, stability } = present(one.branch);
         scans.push((one.id, stability));
         let from = match one.origin {
-            Origin::Switch { branch, event, .. } => From::Switch { branch, event },
-            Origin::Deflation { branch, parameter, .. } => From::Deflation { branch, parameter },
-            _ => From::Start,
+            Origin::Switch { branch, event, .. } => BranchOrigin::Switch { branch, event },
+            Origin::Deflation { branch, parameter, .. } => {
+                BranchOrigin::Deflation { branch, parameter }
+            }
+            _ => BranchOrigin::Start,
         };
         BranchRecord {
             id: one.id,
@@ -257,7 +259,7 @@ pub(super) fn result(
         scan.map_or(event, |(_, stability)| stability.renumbered(event))
     };
     for one in &mut branches {
-        if let From::Switch { branch, event } = &mut one.from {
+        if let BranchOrigin::Switch { branch, event } = &mut one.from {
             *event = renumbered(*branch, *event);
         }
     }

@@ -88,10 +88,10 @@ pub(super) fn run(
 ) -> Result<TraceResult, RunError> {
     let clock = Instant::now();
     let Start { problem, u, p } = start(case, ring)?;
-    let hear = &mut degrees_heard(observer);
+    let observer = &mut in_degrees(observer);
     let traced = Tracer::new(&problem, "alpha", &u, &p, path(&case.path))
         .and_then(|tracer| tracer.watching(&watches()))
-        .map(|tracer| tracer.run(&mut listen(hear)));
+        .map(|tracer| tracer.run(&mut listen(observer)));
     let branch = traced.map_err(|detail| no_start(case, detail))?;
     let seconds = clock.elapsed().as_secs_f64();
     let shapes = shapes(&problem, &branch);
@@ -112,7 +112,7 @@ pub(super) fn run(
 }
 
 /// An observer of angles in degrees hears of angles in radians.
-pub(super) fn degrees_heard<'o>(
+pub(super) fn in_degrees<'o>(
     observer: &'o mut Observer<'_>,
 ) -> impl FnMut(Progress) -> ControlFlow<()> + 'o {
     move |at| observer(Progress { parameter: at.parameter.to_degrees(), ..at })

@@ -102,7 +102,7 @@ pub(super) fn sweep(
     let axes = axes(&reader, root);
     let base = reader.text(root, "case").zip(root.get("case"));
     let base = base.map(|(value, node)| from(file, folder, value, node, catalogue)).transpose()?;
-    if !reader.is_content() {
+    if !reader.has_no_errors() {
         return Err(LoadError::Invalid(reader.into_errors()).into());
     }
     for key in ["case", "vary", "name"] {

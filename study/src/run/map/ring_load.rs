@@ -4,7 +4,7 @@ use super::curves::{Found, curves};
 use super::{Attempt, MapError, Task};
 use crate::case::{PathCase, ResolvedCase, RingLoadCase};
 use crate::closest::closest;
-use crate::run::ring_load::{Start, degrees_heard, no_start, path, start, watches};
+use crate::run::ring_load::{Start, in_degrees, no_start, path, start, watches};
 use crate::run::{Observer, listen};
 use continuation::Tracer;
 
@@ -51,7 +51,7 @@ pub(in crate::run) fn attempt(
     if task.key == MOMENT {
         p[shell_contact::ring_load::parameter::MOMENT.0] = at;
     }
-    let mut observer = degrees_heard(observer);
+    let mut observer = in_degrees(observer);
     let base = Tracer::new(&problem, "alpha", &u, &p, path(&task.case.path))
         .and_then(|tracer| tracer.watching(&watches()))
         .map(|tracer| tracer.run(&mut listen(&mut observer)))
