@@ -282,7 +282,7 @@ fn imperfect<P: Problem>(
     noise: f64,
     max_gap: f64,
 ) -> Option<(Extended, NearBifurcation)> {
-    let found = find(probe, z, tangent, 1).ok()?;
+    let found = find(probe, z, tangent, 1, |_, _, _| false).ok()?;
     if !(found.gap > LEAST_GAP && found.gap <= max_gap && found.unfolding > noise) {
         return None;
     }

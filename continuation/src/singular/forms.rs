@@ -160,13 +160,11 @@ fn pitchfork<P: Problem>(
     let w = at.left[0].clone();
     let mut exchange = f64::NAN;
     let bent = settle(|part| {
-        let first = probe.second(&at.z, fork, part, &[fork, trunk])?;
-        let minus: Vec<f64> = first[0].iter().map(|y| -y).collect();
-        let (h, _) = at.frame.solve(probe, &minus);
-        let with_h = probe.second(&at.z, fork, part, &[&h])?;
-        let third = probe.third(&at.z, fork, part, &[fork])?;
-        exchange = dot(&w, &first[1]);
-        let cubic = dot(&w, &third[0]) + 3.0 * dot(&w, &with_h[0]);
+        let mut bending = probe.bending(&at.z, fork, part, &w)?;
+        bending.second.iter_mut().for_each(|y| *y = -*y);
+        let (h, _) = at.frame.solve(probe, &bending.second);
+        exchange = bending.row.dot(trunk);
+        let cubic = bending.third + 3.0 * bending.row.dot(&h);
         let along = -cubic / (3.0 * exchange);
         Ok((exchange != 0.0).then_some(h.p + along * trunk.p))
     })?;

@@ -232,12 +232,14 @@ pub(crate) fn arbitrary(seed: usize, i: usize) -> f64 {
 }
 
 /// Finds the point near `seed` where the rank is short by `k`; `tangent` is a direction of the
-/// branch that is followed.
+/// branch that is followed. `is_useless` says of a state, and of the radius about it in which the
+/// point will lie, whether it is none that is sought.
 pub(crate) fn find<P: Problem>(
     probe: &mut Probe<'_, P>,
     seed: &Extended,
     tangent: &Extended,
     k: usize,
+    is_useless: impl Fn(&mut Probe<'_, P>, &Extended, f64) -> bool,
 ) -> Result<Singular, Failure> {
     let n = probe.dim();
     let mut z = seed.clone();
@@ -260,7 +262,8 @@ pub(crate) fn find<P: Problem>(
     let mut last = f64::INFINITY;
     let mut known = None;
     for iteration in 0..MAX_ITERATIONS {
-        let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, known.take())?;
+        let source = known.take().map_or(Source::steering(k), Source::Known);
+        let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, source)?;
         let residual: Vec<f64> = probe.residual.iter().map(|r| -r).collect();
         let (mut step, beta) = frame.solve(probe, &residual);
         let y = least_squares(&local.matrix(), &local.defect()).ok_or(Failure::NoConvergence)?;
@@ -283,8 +286,15 @@ pub(crate) fn find<P: Problem>(
         if converged || stagnant {
             return finish(probe, frame, z, amplitude, tangent, correction, &beta);
         }
+        let fast = correction <= FAST * last;
+        if fast && iteration > 0 {
+            let radius = probe.norm(&step);
+            if is_useless(probe, &z, radius) {
+                return Err(Failure::NoConvergence);
+            }
+        }
         // of larger kernels the vectors may turn within their span
-        let settled = k == 1 && correction <= SETTLED && correction <= FAST * last;
+        let settled = k == 1 && correction <= SETTLED && fast;
         known = settled.then_some(local.form);
         last = correction;
         // a state without a value is met by a shorter correction
@@ -315,8 +325,11 @@ fn finish<P: Problem>(
     frame.factor(probe);
     frame.renew(probe).ok_or(Failure::NoConvergence)?;
     frame.turn(probe, tangent).ok_or(Failure::NoConvergence)?;
-    amplitude.clear();
-    let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, None)?;
+    // of one direction beside the branch it is known; of several the vectors have turned
+    if frame.k > 1 {
+        amplitude.clear();
+    }
+    let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, Source::Differences)?;
     // lengths, in natural amplitudes, over which the quadratic form makes the defect and the
     // unfolding
     let x = &amplitude;
@@ -347,20 +360,40 @@ struct Local {
     right: Vec<Extended>,
     left: Vec<Vec<f64>>,
     g: Vec<Vec<f64>>,
-    form: Vec<Vec<Vec<f64>>>,
+    form: Form,
     /// Rounding of `g`, each column times its natural amplitude.
     noise: f64,
 }
 
+/// `form[j][i][l] = w_jᵀ F_zz[v_i, v_l]`.
+type Form = Vec<Vec<Vec<f64>>>;
+
+/// Where a quadratic form comes from.
+enum Source {
+    /// That of a point near by, whose differences are saved.
+    Known(Form),
+    /// From two places for each vector.
+    Rough,
+    /// From four.
+    Differences,
+}
+
+impl Source {
+    /// What an iteration for kernels of `k` dimensions needs: the equations for larger ones are
+    /// consistent only if the form is right.
+    fn steering(k: usize) -> Self {
+        if k == 1 { Source::Rough } else { Source::Differences }
+    }
+}
+
 impl Local {
-    /// `known` is the form of a point near by, whose differences are saved.
     fn of<P: Problem>(
         probe: &mut Probe<'_, P>,
         frame: &mut Frame,
         z: &Extended,
         amplitude: &mut Vec<f64>,
         tangent: &Extended,
-        known: Option<Vec<Vec<Vec<f64>>>>,
+        source: Source,
     ) -> Result<Self, Failure> {
         let k = frame.k;
         let (mut right, mut g) = (Vec::new(), vec![Vec::new(); k]);
@@ -375,9 +408,10 @@ impl Local {
         if amplitude.is_empty() {
             *amplitude = amplitudes(probe, z, &right, tangent)?;
         }
-        let form = match known {
-            Some(form) => form,
-            None => quadratic_form(probe, z, (&right, &left), amplitude)?,
+        let form = match source {
+            Source::Known(form) => form,
+            Source::Rough => quadratic_form(probe, z, (&right, &left), amplitude, true)?,
+            Source::Differences => quadratic_form(probe, z, (&right, &left), amplitude, false)?,
         };
         let norm = |x: &[f64]| crate::step::dot(x, x).sqrt();
         let widest = right.iter().zip(&*amplitude).map(|(v, x)| norm(&v.u) * x);
@@ -442,12 +476,16 @@ fn quadratic_form<P: Problem>(
     z: &Extended,
     (right, left): (&[Extended], &[Vec<f64>]),
     amplitude: &[f64],
-) -> Result<Vec<Vec<Vec<f64>>>, EvalError> {
+    roughly: bool,
+) -> Result<Form, EvalError> {
     let k = left.len();
     let mut form = vec![vec![vec![0.0; k + 1]; k + 1]; k];
     let all: Vec<&Extended> = right.iter().collect();
     for (l, v) in right.iter().enumerate() {
-        let second = probe.second(z, v, amplitude[l], &all)?;
+        let second = match roughly {
+            true => probe.second_roughly(z, v, amplitude[l], &all)?,
+            false => probe.second(z, v, amplitude[l], &all)?,
+        };
         for (j, w) in left.iter().enumerate() {
             for (i, y) in second.iter().enumerate() {
                 form[j][i][l] = crate::step::dot(w, y);
@@ -477,7 +515,7 @@ fn amplitudes<P: Problem>(
 ) -> Result<Vec<f64>, EvalError> {
     let mut amplitude = vec![1.0];
     let others: Vec<&Extended> = right[1..].iter().collect();
-    let along = probe.second(z, tangent, 1.0, &others)?;
+    let along = probe.second_roughly(z, tangent, 1.0, &others)?;
     for (v, by_branch) in right[1..].iter().zip(&along) {
         let reference = super::max_abs(by_branch);
         let found = if reference > 0.0 { probe.amplitude(z, v, reference) } else { None };

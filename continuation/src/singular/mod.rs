@@ -40,6 +40,8 @@ pub(crate) use crate::linalg::max_abs;
 const MAX_GAP: f64 = 1e-6;
 /// Distance from the interpolated branch, relative to the step, above which a point is not on it.
 const MAX_OFF: f64 = 0.1;
+/// Newton's method has left the step if it is that many of its latest corrections beyond.
+const FAR: f64 = 4.0;
 /// Least cosine between the branch's expected direction and one of the tangents.
 const MIN_ALIGNMENT: f64 = 0.9;
 /// Where in a step Newton's method starts, in turn, if nothing better is known.
@@ -162,7 +164,13 @@ fn attempt<P: Problem>(
     };
     let seed = along(probe, z).clamp(0.0, h);
     let tangent = tangent_at(probe, a, b, h, bend, seed);
-    let mut found = kernel::find(probe, z, &tangent, k)?;
+    // what lies beyond both neighbours of the step says nothing of it
+    let astray = |probe: &mut Probe<'_, P>, z: &Extended, radius: f64| {
+        let at = along(probe, z);
+        let beyond = (-h - at).max(at - 2.0 * h);
+        beyond > FAR * radius
+    };
+    let mut found = kernel::find(probe, z, &tangent, k, astray)?;
     let mut gap = 0.0;
     if k > 1 {
         // a residual no larger than that of a converged state says nothing of a gap

@@ -12,6 +12,11 @@ const FINER: f64 = 0.25;
 const MOST: i32 = 9;
 /// The step far below the first two that shows a finer scale, 1000 times shorter.
 const DEEP: i32 = 5;
+/// By how much a step is longer that smooth functions hardly tell from it: what falls like its fourth
+/// power changes by 8 %.
+const LONGER: f64 = 1.02;
+/// A change by that part over such a step is rounding.
+const IRREGULAR: f64 = 0.3;
 /// Relative difference of the first two values that is truncation.
 const CONVERGED: f64 = 1e-4;
 /// Relative difference of the first two values that is rounding.
@@ -40,12 +45,33 @@ impl Settled {
 pub(super) fn settle(
     mut value: impl FnMut(f64) -> Result<Option<f64>, EvalError>,
 ) -> Result<Option<Settled>, EvalError> {
-    let mut at = |k: i32| value(FINER.powi(k)).map(|v| v.filter(|v| v.is_finite()));
-    let first = [at(0), at(1), at(DEEP)];
-    if let [Ok(Some(coarse)), Ok(Some(fine)), Ok(Some(deep))] = first {
+    let mut at = |part: f64| value(part).map(|v| v.filter(|v| v.is_finite()));
+    let mut known = [None; MOST as usize];
+    for k in [0, 1, DEEP] {
+        known[k as usize] = Some(at(FINER.powi(k)));
+    }
+    if let [Some(Ok(Some(coarse))), Some(Ok(Some(fine)))] = known[..2] {
         let truncation = (coarse - fine).abs();
         let size = coarse.abs().max(fine.abs());
-        if truncation <= CONVERGED * size && (deep - fine).abs() <= STANDS * size {
+        let mut smooth = false;
+        let mut k = DEEP;
+        while truncation <= CONVERGED * size && k > 1 && !smooth {
+            let Ok(Some(v)) = *known[k as usize].get_or_insert_with(|| at(FINER.powi(k))) else {
+                break;
+            };
+            let off = (v - fine).abs();
+            smooth = off <= STANDS * size;
+            if !smooth {
+                // where a step hardly longer has quite another value, rounding has it, and all of the
+                // shorter ones; the next longer one has sixteen times less
+                let beside = at(LONGER * FINER.powi(k));
+                if !matches!(beside, Ok(Some(beside)) if (v - beside).abs() > IRREGULAR * off) {
+                    break;
+                }
+                k -= 1;
+            }
+        }
+        if smooth {
             // a difference this small is rounding, of which the longer step has less
             let value = if truncation <= ROUNDING * size { coarse } else { fine };
             return Ok(Some(Settled { value, error: truncation, converged: true }));
@@ -54,13 +80,7 @@ pub(super) fn settle(
     let mut values = Vec::new();
     let mut failure = None;
     for k in 0..MOST {
-        let known = match k {
-            0 => first[0],
-            1 => first[1],
-            DEEP => first[2],
-            _ => at(k),
-        };
-        match known {
+        match known[k as usize].unwrap_or_else(|| at(FINER.powi(k))) {
             Ok(Some(v)) => values.push(v),
             Ok(None) => return Ok(None),
             // a long step may leave the domain, a short one does not

@@ -45,6 +45,16 @@ pub(super) const FIRST: f64 = 1e-3;
 /// Step of second differences.
 const SECOND: f64 = 1e-2;
 
+/// Derivatives along a direction `v`, with a left vector `w`.
+pub(super) struct Bending {
+    /// `F_zz[v, v]`.
+    pub(super) second: Vec<f64>,
+    /// `wᵀF_zz[v, ·]`.
+    pub(super) row: Extended,
+    /// `wᵀF_zzz[v, v, v]`.
+    pub(super) third: f64,
+}
+
 /// Evaluates a problem near a point; allocated when a special point is analysed.
 pub(crate) struct Probe<'a, P: Problem> {
     pub(crate) problem: &'a P,
@@ -141,6 +151,17 @@ impl<'a, P: Problem> Probe<'a, P> {
         (dot(&self.metric, &x.u) + x.p * x.p).max(0.0).sqrt()
     }
 
+    /// Jacobian and parameter derivative at `z + h v`.
+    fn assemble_beside(&mut self, z: &Extended, v: &Extended, h: f64) -> Result<(), EvalError> {
+        for ((place, u), v) in self.place.iter_mut().zip(&z.u).zip(&v.u) {
+            *place = u + h * v;
+        }
+        self.p[self.which.0] = z.p + h * v.p;
+        self.assemblies += 1;
+        self.problem.jacobian(&self.place, &self.p, &mut self.shifted)?;
+        self.problem.parameter_derivative(&self.place, &self.p, self.which, &mut self.slope)
+    }
+
     /// Adds `a [F_u F_p](z + h v) x_i` to `out[i]` for every `x_i`.
     fn accumulate(
         &mut self,
@@ -151,13 +172,7 @@ impl<'a, P: Problem> Probe<'a, P> {
         xs: &[&Extended],
         out: &mut [Vec<f64>],
     ) -> Result<(), EvalError> {
-        for ((place, u), v) in self.place.iter_mut().zip(&z.u).zip(&v.u) {
-            *place = u + h * v;
-        }
-        self.p[self.which.0] = z.p + h * v.p;
-        self.assemblies += 1;
-        self.problem.jacobian(&self.place, &self.p, &mut self.shifted)?;
-        self.problem.parameter_derivative(&self.place, &self.p, self.which, &mut self.slope)?;
+        self.assemble_beside(z, v, h)?;
         for (x, out) in xs.iter().zip(out) {
             self.shifted.mul(&x.u, &mut self.product);
             for ((o, y), f) in out.iter_mut().zip(&self.product).zip(&self.slope) {
@@ -208,6 +223,18 @@ impl<'a, P: Problem> Probe<'a, P> {
         self.stencil(z, v, &terms, xs)
     }
 
+    /// The same from two places, to about 1e-6: enough to steer an iteration.
+    pub(crate) fn second_roughly(
+        &mut self,
+        z: &Extended,
+        v: &Extended,
+        amplitude: f64,
+        xs: &[&Extended],
+    ) -> Result<Vec<Vec<f64>>, EvalError> {
+        let h = FIRST * amplitude;
+        self.stencil(z, v, &[(h, 0.5 / h), (-h, -0.5 / h)], xs)
+    }
+
     /// `F_zzz[v, v, x_i]` for every `x_i`, and `F_zz[v, x_i]` from the same evaluations.
     pub(crate) fn third(
         &mut self,
@@ -221,6 +248,49 @@ impl<'a, P: Problem> Probe<'a, P> {
         let terms =
             [(h, 16.0 * a), (-h, 16.0 * a), (2.0 * h, -a), (-2.0 * h, -a), (0.0, -30.0 * a)];
         self.stencil(z, v, &terms, xs)
+    }
+
+    /// What bends a branch along `v` in the direction of `w`, all from four places; the matrix that was
+    /// assembled last is that at `z`.
+    pub(super) fn bending(
+        &mut self,
+        z: &Extended,
+        v: &Extended,
+        amplitude: f64,
+        w: &[f64],
+    ) -> Result<Bending, EvalError> {
+        let h = SECOND * amplitude;
+        let (a, b) = (1.0 / (12.0 * h), 1.0 / (12.0 * h * h));
+        let n = self.dim();
+        let mut bending = Bending { second: vec![0.0; n], row: Extended::zero(n), third: 0.0 };
+        self.jacobian.mul(&v.u, &mut self.product);
+        let here = dot(w, &self.product) + v.p * dot(w, &self.by_parameter);
+        bending.third = -30.0 * b * here;
+        let places = [
+            (h, 8.0 * a, 16.0 * b),
+            (-h, -8.0 * a, 16.0 * b),
+            (2.0 * h, -a, -b),
+            (-2.0 * h, a, -b),
+        ];
+        for (x, first, second) in places {
+            self.assemble_beside(z, v, x)?;
+            self.shifted.mul(&v.u, &mut self.product);
+            for (y, f) in self.product.iter_mut().zip(&self.slope) {
+                *y += v.p * f;
+            }
+            bending.third += second * dot(w, &self.product);
+            for (s, y) in bending.second.iter_mut().zip(&self.product) {
+                *s += first * y;
+            }
+            self.shifted.mul_transpose(w, &mut self.product);
+            for (r, y) in bending.row.u.iter_mut().zip(&self.product) {
+                *r += first * y;
+            }
+            bending.row.p += first * dot(w, &self.slope);
+        }
+        check_finite(&bending.second)?;
+        check_finite(&bending.row.u)?;
+        Ok(bending)
     }
 
     /// `−[F_u F_p](z) v`.

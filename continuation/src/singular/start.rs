@@ -35,7 +35,7 @@ pub(crate) fn branch_point_at<P: Problem>(
     let along = Extended { u: vec![0.0; x.u.len()], p: probe.weights.parameter };
     let mut found = None;
     for k in 1..=MOST.min(x.u.len()) {
-        if let Ok(one) = kernel::find(&mut probe, &z, &along, k) {
+        if let Ok(one) = kernel::find(&mut probe, &z, &along, k, |_, _, _| false) {
             found = Some((k, one));
             break;
         }

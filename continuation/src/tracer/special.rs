@@ -17,6 +17,9 @@ use crate::step::{Constraint, Core, Precision, Refusal, State};
 /// point towards which it left the domain.
 const BRACKET: f64 = 1e-3;
 
+/// Part of the step to which a branch point is bracketed where Newton's method met another.
+const NEARER: f64 = 0.1;
+
 /// Bisections by which a change of the count by several is divided into its parts.
 const DIVISIONS: usize = 6;
 
@@ -202,7 +205,9 @@ impl<P: Problem> Tracer<'_, P> {
             state: one.state,
         };
         let near;
-        let mut seeds = &SEEDS[..];
+        // from elsewhere Newton's method meets a neighbour where modes lie close: what fails from the middle
+        // is bracketed
+        let mut seeds = if kernel == 1 && !final_say { &SEEDS[..1] } else { &SEEDS[..] };
         if kernel > 1 && !final_say {
             match divide(core, a, b, h, work) {
                 Divided::Between(at) => {
@@ -218,10 +223,14 @@ impl<P: Problem> Tracer<'_, P> {
         }
         match locate_branch_points(core, a, b, h, kernel, seeds, final_say) {
             Ok(found) => located.extend(found.into_iter().map(special)),
-            // Newton's method left the domain, as it does where thin films forbid a long way: the point
-            // is bracketed first, on the branch
-            Err(Refusal::Evaluation(_)) if kernel == 1 && !final_say => {
-                locate(core, a, b, h, &candidate, BRACKET * h, work)?;
+            // or left the domain, as it does where thin films forbid a long way
+            Err(refusal) if kernel == 1 && !final_say => {
+                let part = match refusal {
+                    Refusal::Evaluation(_) => BRACKET,
+                    Refusal::BranchesClose { .. } => return Err(refusal),
+                    _ => NEARER,
+                };
+                locate(core, a, b, h, &candidate, part * h, work)?;
                 let found = locate_branch_point_near(core, (a, b), h, work, final_say)?;
                 located.push(special(found));
             }

@@ -109,7 +109,7 @@ fn check<J: Entries>(n: usize, max_step: Option<f64>) {
     assert_eq!(branch.stopped.reason, StopReason::Target, "{n}: {:?}", branch.stopped);
     let cost = branch.statistics.newton_iterations;
     // steps over several points are divided by the counts, not by failures of Newton's method
-    assert!(cost <= 2000, "{n}: {cost} assemblies");
+    assert!(cost <= 600, "{n}: {cost} assemblies");
     let points: Vec<_> = branch.events_of(&EventKind::BranchPoint).collect();
     let found: Vec<f64> = points.iter().map(|e| e.p).collect();
     assert_eq!(found.len(), 5, "{n}: {found:?}, {:?}", branch.stopped);
