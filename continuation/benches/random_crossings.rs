@@ -4,8 +4,10 @@
 //! Not timed: it ends with an error at the first that fails. The tests run sixty of them.
 #![allow(dead_code, clippy::unwrap_used, clippy::print_stdout, reason = "shared with the tests")]
 
-#[path = "../tests/uncertain_counts/crossings.rs"]
+#[path = "../tests/engine/uncertain_counts/crossings.rs"]
 mod crossings;
+#[path = "../tests/engine/random/mod.rs"]
+mod random;
 
 const PROBLEMS: usize = 1000;
 

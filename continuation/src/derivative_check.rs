@@ -42,7 +42,7 @@ impl DerivativeCheck {
 ///
 /// # Errors
 /// Where the problem has no value at or near the state.
-pub fn check_derivatives<P: Problem>(
+pub fn check_derivatives<P: Problem + ?Sized>(
     problem: &P,
     u: &[f64],
     p: &[f64],

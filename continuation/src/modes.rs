@@ -41,7 +41,7 @@ pub struct Modes {
 ///
 /// # Errors
 /// Where the problem has no value at the state.
-pub fn modes<P: Problem>(
+pub fn modes<P: Problem + ?Sized>(
     problem: &P,
     u: &[f64],
     p: &[f64],
@@ -107,7 +107,7 @@ fn dense<A: Matrix>(a: &A) -> Dense {
 }
 
 /// Computes the most unstable eigenvalues from a factored Jacobian; storage is reused.
-pub(crate) struct ModeSolver<P: Problem> {
+pub(crate) struct ModeSolver<P: Problem + ?Sized> {
     wanted: usize,
     sense: Stability,
     multipliers: usize,
@@ -121,7 +121,7 @@ pub(crate) struct ModeSolver<P: Problem> {
     definite: Option<bool>,
 }
 
-impl<P: Problem> ModeSolver<P> {
+impl<P: Problem + ?Sized> ModeSolver<P> {
     pub(crate) fn new(problem: &P, wanted: usize) -> Self {
         // from here on the matrices that come in are the Hessian
         let sense = match problem.stability() {

@@ -86,7 +86,7 @@ pub struct NewtonReport {
 ///
 /// # Errors
 /// When no solution was found; `u` then holds the best state reached.
-pub fn newton<P: Problem>(
+pub fn newton<P: Problem + ?Sized>(
     problem: &P,
     u: &mut [f64],
     p: &[f64],
@@ -189,7 +189,7 @@ pub(crate) fn finite_rows<M: Matrix>(matrix: &M, scratch: &mut [f64]) -> Result<
 }
 
 /// Whether a residual is no more than the rounding errors of its terms.
-fn residual_is_rounding<P: Problem>(
+fn residual_is_rounding<P: Problem + ?Sized>(
     problem: &P,
     u: &[f64],
     p: &[f64],

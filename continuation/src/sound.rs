@@ -60,7 +60,7 @@ const BEFORE: [f64; 2] = [0.734_112_9, -1.913_377_1];
 const ADDED: f64 = 1e-9;
 
 /// Number of unknowns and dimension of the Jacobian.
-pub(crate) fn check_sizes<P: Problem>(problem: &P) -> Result<(), ProblemError> {
+pub(crate) fn check_sizes<P: Problem + ?Sized>(problem: &P) -> Result<(), ProblemError> {
     let expected = problem.dim();
     if expected == 0 {
         return Err(ProblemError::NoUnknowns);
@@ -73,7 +73,7 @@ pub(crate) fn check_sizes<P: Problem>(problem: &P) -> Result<(), ProblemError> {
 }
 
 /// Lengths of the unknowns and of the parameters.
-pub(crate) fn check_lengths<P: Problem>(
+pub(crate) fn check_lengths<P: Problem + ?Sized>(
     problem: &P,
     u: &[f64],
     p: &[f64],
@@ -92,7 +92,7 @@ pub(crate) fn check_lengths<P: Problem>(
 
 /// What a few evaluations at a state say of the problem; sizes and lengths are right. A state
 /// without a value says nothing.
-pub(crate) fn examine<P: Problem>(
+pub(crate) fn examine<P: Problem + ?Sized>(
     problem: &P,
     which: ParamId,
     u: &[f64],
@@ -150,7 +150,7 @@ fn written(
 }
 
 /// Whether the residual and both its derivatives are zero at this state and at others.
-fn vanishes<P: Problem>(problem: &P, which: ParamId, u: &[f64], p: &[f64]) -> bool {
+fn vanishes<P: Problem + ?Sized>(problem: &P, which: ParamId, u: &[f64], p: &[f64]) -> bool {
     let n = u.len();
     let (mut r, mut slope, mut j) = (vec![0.0; n], vec![0.0; n], problem.new_jacobian());
     let size = u.iter().fold(1.0, |m: f64, x| m.max(x.abs()));

@@ -53,7 +53,7 @@ impl fmt::Display for WrongDerivative {
 
 /// The derivative by which the problem deviates most from its residual at a state, if that is beyond
 /// doubt. Allocates, and costs some 50 residuals: to be asked rarely.
-pub(crate) fn wrong_derivative<P: Problem>(
+pub(crate) fn wrong_derivative<P: Problem + ?Sized>(
     problem: &P,
     which: ParamId,
     (u, p): (&[f64], &[f64]),
@@ -89,7 +89,7 @@ pub(crate) fn wrong_derivative<P: Problem>(
 
 /// The rows in which the derivative along a direction, or by the parameter, deviates; `None` without a
 /// value.
-fn compare<P: Problem>(
+fn compare<P: Problem + ?Sized>(
     problem: &P,
     which: ParamId,
     (u, p): (&[f64], &[f64]),

@@ -43,7 +43,7 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// there: the curve goes on behind it, or ends with a step that is too small.
 ///
 /// Observables are `p`, those of the original problem, `beta` and `unfolding`.
-pub struct BranchPointCurve<'a, P: Problem> {
+pub struct BranchPointCurve<'a, P: Problem + ?Sized> {
     base: Underlying<'a, P>,
     names: Vec<&'static str>,
     /// The start, `(u, β, p)`.
@@ -53,7 +53,7 @@ pub struct BranchPointCurve<'a, P: Problem> {
     work: RefCell<Work<P>>,
 }
 
-struct Work<P: Problem> {
+struct Work<P: Problem + ?Sized> {
     at: Vec<f64>,
     level: Level,
     p: Vec<f64>,
@@ -136,7 +136,7 @@ impl Kernel {
     }
 }
 
-impl<'a, P: Problem> BranchPointCurve<'a, P> {
+impl<'a, P: Problem + ?Sized> BranchPointCurve<'a, P> {
     /// The curve through a simple branch point of `branch` when the parameter `second` varies too.
     ///
     /// # Errors
@@ -303,7 +303,7 @@ impl<'a, P: Problem> BranchPointCurve<'a, P> {
 }
 
 /// Replaces the borders by the null vectors, orthonormal in the scaled metric, and the left one.
-fn take<P: Problem>(base: &Underlying<'_, P>, work: &mut Work<P>) {
+fn take<P: Problem + ?Sized>(base: &Underlying<'_, P>, work: &mut Work<P>) {
     let Work { kernel, scratch, .. } = work;
     let (u2, p2) = (base.scales.unknowns.powi(2), base.scales.first.powi(2));
     for k in 0..2 {
@@ -342,7 +342,7 @@ fn take<P: Problem>(base: &Underlying<'_, P>, work: &mut Work<P>) {
 }
 
 /// Whether the null vectors have turned away from the borders.
-fn astray<P: Problem>(base: &Underlying<'_, P>, work: &mut Work<P>) -> bool {
+fn astray<P: Problem + ?Sized>(base: &Underlying<'_, P>, work: &mut Work<P>) -> bool {
     let Work { kernel, scratch, .. } = work;
     let (u2, p2) = (base.scales.unknowns.powi(2), base.scales.first.powi(2));
     // the rows are of unit length, and dual to the null vectors
@@ -356,7 +356,7 @@ fn astray<P: Problem>(base: &Underlying<'_, P>, work: &mut Work<P>) -> bool {
     longest.sqrt() > 1.0 / ALIGNED || left > 1.0 / ALIGNED
 }
 
-impl<P: Problem> BranchPointCurve<'_, P> {
+impl<P: Problem + ?Sized> BranchPointCurve<'_, P> {
     /// The quadratic form on the kernel, whose vectors are as long as the scales.
     fn form(work: &Work<P>) -> [[f64; 2]; 2] {
         let kernel = &work.kernel;
@@ -372,7 +372,7 @@ impl<P: Problem> BranchPointCurve<'_, P> {
     }
 }
 
-impl<P: Problem> Problem for BranchPointCurve<'_, P> {
+impl<P: Problem + ?Sized> Problem for BranchPointCurve<'_, P> {
     type Jacobian = Arrow<P::Jacobian>;
 
     fn dim(&self) -> usize {
@@ -492,7 +492,7 @@ impl<P: Problem> Problem for BranchPointCurve<'_, P> {
     }
 }
 
-impl<P: Problem> SpecialPoints for BranchPointCurve<'_, P> {
+impl<P: Problem + ?Sized> SpecialPoints for BranchPointCurve<'_, P> {
     fn others(&self, _x: &[f64], _p: &[f64]) -> Result<Others, EvalError> {
         Ok(Others::default())
     }

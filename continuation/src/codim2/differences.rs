@@ -40,7 +40,7 @@ pub(super) fn slope_step(step: f64, q: f64, dq: f64) -> f64 {
 }
 
 /// Work space of the differences along one direction.
-pub(super) struct Differences<P: Problem> {
+pub(super) struct Differences<P: Problem + ?Sized> {
     shifted: P::Jacobian,
     place: Vec<f64>,
     p: Vec<f64>,
@@ -58,7 +58,7 @@ pub(super) struct Differences<P: Problem> {
     parameters: Vec<ParamId>,
 }
 
-impl<P: Problem> Differences<P> {
+impl<P: Problem + ?Sized> Differences<P> {
     pub(super) fn new(problem: &P, lefts: usize, parameters: &[ParamId]) -> Self {
         let n = problem.dim();
         let all = lefts + parameters.len();

@@ -34,7 +34,7 @@ const SLOPE: f64 = 1e-4;
 /// A fold curve does not end at a [cusp](EventKind::Cusp), a
 /// [Bogdanov-Takens](EventKind::BogdanovTakens) or a [zero-Hopf](EventKind::ZeroHopf) point; it is
 /// traced through. Where it turns in `q` (at cusps, and elsewhere) no event is made of that.
-pub struct FoldCurve<'a, P: Problem> {
+pub struct FoldCurve<'a, P: Problem + ?Sized> {
     pub(super) base: Underlying<'a, P>,
     names: Vec<&'static str>,
     /// Number of the first test among the observables.
@@ -47,7 +47,7 @@ pub struct FoldCurve<'a, P: Problem> {
 }
 
 /// What is known at the latest state.
-struct Work<P: Problem> {
+struct Work<P: Problem + ?Sized> {
     /// The state and the parameters of the curve, and for which of them the rest is known.
     at: Vec<f64>,
     level: Level,
@@ -77,7 +77,7 @@ enum Level {
     Gradient,
 }
 
-impl<'a, P: Problem> FoldCurve<'a, P> {
+impl<'a, P: Problem + ?Sized> FoldCurve<'a, P> {
     /// The curve through a fold of `branch` when the parameter `second` varies too.
     ///
     /// # Errors
@@ -303,7 +303,7 @@ impl<'a, P: Problem> FoldCurve<'a, P> {
     }
 }
 
-impl<P: Problem> Problem for FoldCurve<'_, P> {
+impl<P: Problem + ?Sized> Problem for FoldCurve<'_, P> {
     type Jacobian = Arrow<P::Jacobian>;
 
     fn dim(&self) -> usize {
@@ -424,7 +424,7 @@ impl<P: Problem> Problem for FoldCurve<'_, P> {
     }
 }
 
-impl<P: Problem> FoldCurve<'_, P> {
+impl<P: Problem + ?Sized> FoldCurve<'_, P> {
     /// `∂g` by a parameter other than the two of the curve.
     fn other_derivative(
         &self,
@@ -447,7 +447,7 @@ impl<P: Problem> FoldCurve<'_, P> {
     }
 }
 
-impl<P: Problem> Work<P> {
+impl<P: Problem + ?Sized> Work<P> {
     /// Adapts the borders to the latest null vectors.
     fn renew(&mut self) {
         if self.level > Level::Nothing && self.null.renew() {
@@ -456,7 +456,7 @@ impl<P: Problem> Work<P> {
     }
 }
 
-impl<P: Problem> SpecialPoints for FoldCurve<'_, P> {
+impl<P: Problem + ?Sized> SpecialPoints for FoldCurve<'_, P> {
     fn others(&self, x: &[f64], p: &[f64]) -> Result<Others, EvalError> {
         let work = &mut *self.work.borrow_mut();
         self.bring(work, x, p, Level::Null)?;

@@ -43,7 +43,7 @@ const FEW: usize = 10;
 /// [Zero-Hopf](EventKind::ZeroHopf) and [double-Hopf](EventKind::DoubleHopf) points come from the
 /// full spectrum of small dense matrices, else from the eigenvalues nearest to zero, among which
 /// pairs of high frequency may be missing.
-pub struct HopfCurve<'a, P: Problem> {
+pub struct HopfCurve<'a, P: Problem + ?Sized> {
     pub(super) base: Underlying<'a, P>,
     names: Vec<&'static str>,
     /// Index of the test among the observables.
@@ -56,7 +56,7 @@ pub struct HopfCurve<'a, P: Problem> {
     work: RefCell<Work<'a, P>>,
 }
 
-struct Work<'a, P: Problem> {
+struct Work<'a, P: Problem + ?Sized> {
     /// The state and the parameters of the curve for which the rest is known.
     at: Vec<f64>,
     level: Level,
@@ -83,7 +83,7 @@ enum Level {
     Gradient,
 }
 
-impl<'a, P: Problem> HopfCurve<'a, P> {
+impl<'a, P: Problem + ?Sized> HopfCurve<'a, P> {
     /// The curve through a Hopf point of `branch` when the parameter `second` varies too.
     ///
     /// # Errors
@@ -294,7 +294,7 @@ impl<'a, P: Problem> HopfCurve<'a, P> {
     }
 }
 
-impl<P: Problem> Problem for HopfCurve<'_, P> {
+impl<P: Problem + ?Sized> Problem for HopfCurve<'_, P> {
     type Jacobian = Arrow<P::Jacobian>;
 
     fn dim(&self) -> usize {
@@ -447,7 +447,7 @@ impl<P: Problem> Problem for HopfCurve<'_, P> {
     }
 }
 
-impl<P: Problem> SpecialPoints for HopfCurve<'_, P> {
+impl<P: Problem + ?Sized> SpecialPoints for HopfCurve<'_, P> {
     fn others(&self, x: &[f64], p: &[f64]) -> Result<Others, EvalError> {
         let n = self.base.problem.dim();
         let work = &mut *self.work.borrow_mut();

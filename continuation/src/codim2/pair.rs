@@ -9,7 +9,7 @@ const ALIGNED: f64 = 0.9;
 
 /// The solution of `[A b; cᴴ 0] [v; g] = [0; 1]` with `A = f_u − iωM`, and that of the conjugate
 /// transposed system.
-pub(super) struct PairNull<P: Problem> {
+pub(super) struct PairNull<P: Problem + ?Sized> {
     mass: P::Jacobian,
     bordered: Bordered,
     pub(super) right: Vec<f64>,
@@ -34,7 +34,7 @@ fn turned(x: &[f64], y: &mut [f64]) {
     }
 }
 
-impl<P: Problem> PairNull<P> {
+impl<P: Problem + ?Sized> PairNull<P> {
     /// `None` where the matrix type knows no identity.
     pub(super) fn new(problem: &P) -> Option<Self> {
         let n = problem.dim();

@@ -67,7 +67,7 @@ pub(super) struct Scales {
 }
 
 /// The problem, its first parameter, now an unknown, and its second.
-pub(super) struct Underlying<'a, P> {
+pub(super) struct Underlying<'a, P: ?Sized> {
     pub(super) problem: &'a P,
     pub(super) first: ParamId,
     pub(super) second: ParamId,
@@ -83,7 +83,7 @@ pub(super) struct Underlying<'a, P> {
     moves: bool,
 }
 
-impl<'a, P: Problem> Underlying<'a, P> {
+impl<'a, P: Problem + ?Sized> Underlying<'a, P> {
     pub(super) fn at(
         problem: &'a P,
         branch: &Branch,
@@ -239,7 +239,7 @@ impl<'a, P: Problem> Underlying<'a, P> {
 }
 
 /// The ranges along the branch on which the special point lies.
-fn scales<P: Problem>(
+fn scales<P: Problem + ?Sized>(
     problem: &P,
     branch: &Branch,
     at: &Point,

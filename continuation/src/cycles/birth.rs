@@ -40,7 +40,7 @@ impl SmallCycle {
     /// # Errors
     /// When the event is no Hopf point of a branch of this problem, has no eigenvector, or no small
     /// cycle is found.
-    pub fn at_hopf<P: Problem>(
+    pub fn at_hopf<P: Problem + ?Sized>(
         problem: &P,
         branch: &Branch,
         event: &Event,
@@ -83,7 +83,7 @@ impl SmallCycle {
     ///
     /// # Errors
     /// When the event is no period doubling of a branch of this problem, or no such cycle is found.
-    pub fn at_doubling<P: Problem>(
+    pub fn at_doubling<P: Problem + ?Sized>(
         problem: &P,
         cycles: &CycleBranch,
         event: &Event,
@@ -116,7 +116,7 @@ impl SmallCycle {
     /// # Errors
     /// When the event is no branch point of a branch of this problem, it has no such direction, the
     /// direction changes the parameter alone, or no cycle is found along it.
-    pub fn at_branch_point<P: Problem>(
+    pub fn at_branch_point<P: Problem + ?Sized>(
         problem: &P,
         cycles: &CycleBranch,
         event: &Event,
@@ -148,7 +148,7 @@ fn foreign(what: &'static str) -> CycleError {
 }
 
 /// The continued parameter and all values at the event.
-fn place<P: Problem>(
+fn place<P: Problem + ?Sized>(
     problem: &P,
     branch: &Branch,
     event: &Event,
@@ -165,7 +165,7 @@ fn place<P: Problem>(
 }
 
 /// The cycle that is `base` plus a small multiple of `direction`, corrected.
-fn leave<P: Problem>(
+fn leave<P: Problem + ?Sized>(
     problem: &P,
     which: ParamId,
     base: &Cycle,
@@ -226,7 +226,7 @@ fn leave<P: Problem>(
 }
 
 /// The cycle at the distance `epsilon` along the direction, and how far the first correction went.
-fn correct<P: Problem>(
+fn correct<P: Problem + ?Sized>(
     equations: &CycleProblem<'_, P>,
     which: ParamId,
     base: &Cycle,

@@ -33,7 +33,7 @@ pub(super) const TORUS: &str = "neimark_sacker";
 /// unit. Observables are `period`, `period_doubling` and `neimark_sacker`, two functions of the
 /// multipliers that vanish where one is −1, and where the product of two is 1. It says nothing about
 /// stability: the eigenvalues of its Jacobian are not the multipliers.
-pub struct CycleProblem<'a, P: Problem> {
+pub struct CycleProblem<'a, P: Problem + ?Sized> {
     pub(super) problem: &'a P,
     pub(super) n: usize,
     pub(super) basis: Basis,
@@ -46,7 +46,7 @@ pub struct CycleProblem<'a, P: Problem> {
     work: RefCell<Work<P>>,
 }
 
-struct Work<P: Problem> {
+struct Work<P: Problem + ?Sized> {
     u: Vec<f64>,
     du: Vec<f64>,
     f: Vec<f64>,
@@ -60,7 +60,7 @@ struct Work<P: Problem> {
 }
 
 /// A dense copy of a constant mass matrix, if it has full rank.
-pub(super) fn mass<P: Problem>(problem: &P) -> Result<Option<Dense>, CycleError> {
+pub(super) fn mass<P: Problem + ?Sized>(problem: &P) -> Result<Option<Dense>, CycleError> {
     let n = problem.dim();
     let mut mass = problem.new_jacobian();
     mass.set_zero();
@@ -79,7 +79,7 @@ pub(super) fn mass<P: Problem>(problem: &P) -> Result<Option<Dense>, CycleError>
     if facts.perturbed > 0 { Err(CycleError::SingularMass) } else { Ok(Some(full)) }
 }
 
-impl<'a, P: Problem> CycleProblem<'a, P> {
+impl<'a, P: Problem + ?Sized> CycleProblem<'a, P> {
     /// The equations on the mesh of `cycle`, which is the reference orbit of the phase condition.
     ///
     /// # Errors
@@ -385,7 +385,7 @@ fn normalised(values: impl Iterator<Item = (f64, f64)>, z: f64) -> f64 {
     product.0 / size
 }
 
-impl<P: Problem> Problem for CycleProblem<'_, P> {
+impl<P: Problem + ?Sized> Problem for CycleProblem<'_, P> {
     type Jacobian = CycleMatrix;
 
     fn dim(&self) -> usize {

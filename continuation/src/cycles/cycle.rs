@@ -118,7 +118,7 @@ impl Cycle {
     ///
     /// # Errors
     /// When the problem has no cycles of its own, or there is none near the guess.
-    pub fn near<P: Problem>(
+    pub fn near<P: Problem + ?Sized>(
         problem: &P,
         p: &[f64],
         period: f64,
@@ -142,7 +142,7 @@ impl Cycle {
     ///
     /// # Errors
     /// As [`Cycle::near`], and when the series is no orbit or does not return.
-    pub fn from_series<P: Problem>(
+    pub fn from_series<P: Problem + ?Sized>(
         problem: &P,
         p: &[f64],
         times: &[f64],
@@ -273,7 +273,7 @@ impl Cycle {
     }
 
     /// The solution on the cycle's own mesh.
-    pub(super) fn solved<P: Problem>(&self, problem: &P) -> Result<Cycle, CycleError> {
+    pub(super) fn solved<P: Problem + ?Sized>(&self, problem: &P) -> Result<Cycle, CycleError> {
         let equations = CycleProblem::new(problem, self)?;
         let mut x = equations.unknowns(self);
         newton(&equations, &mut x, &self.parameters, &NewtonSettings::default())?;
@@ -297,7 +297,7 @@ impl Cycle {
 
     /// The cycle on a mesh of its own, with as many intervals as its accuracy asks for: see
     /// [`CycleSettings::accuracy`].
-    pub(super) fn adapted<P: Problem>(
+    pub(super) fn adapted<P: Problem + ?Sized>(
         &self,
         problem: &P,
         settings: &CycleSettings,
@@ -332,7 +332,7 @@ impl Cycle {
 
     /// Relative change of period and states at the mesh points when every interval is halved; `None`
     /// where there is no solution then.
-    pub(super) fn discretisation_error<P: Problem>(&self, problem: &P) -> Option<f64> {
+    pub(super) fn discretisation_error<P: Problem + ?Sized>(&self, problem: &P) -> Option<f64> {
         let fine = self.on(halved(&self.mesh)).solved(problem).ok()?;
         let period = (fine.period / self.period - 1.0).abs();
         let (n, m, size) = (self.dim(), self.degree, self.amplitude());

@@ -72,7 +72,7 @@ pub(super) struct Finer {
 
 /// Solves for the same point with every interval halved; `None` where that fails. `across` has it sought
 /// on the plane across the branch in any case, with a second point ahead.
-pub(super) fn finer<P: Problem>(
+pub(super) fn finer<P: Problem + ?Sized>(
     coarse: &CycleProblem<'_, P>,
     which: ParamId,
     x: &[f64],
@@ -114,7 +114,7 @@ pub(super) fn finer<P: Problem>(
 }
 
 /// The tangent at a state near a solution, of unit length in the scaled metric; `None` where there is none.
-fn tangent<P: Problem>(
+fn tangent<P: Problem + ?Sized>(
     problem: &CycleProblem<'_, P>,
     which: ParamId,
     p: &[f64],
@@ -144,7 +144,7 @@ fn tangent<P: Problem>(
 }
 
 /// A point a small step along the branch.
-fn step_along<P: Problem>(core: &mut Core<'_, P>, from: &State) -> Result<State, Refusal> {
+fn step_along<P: Problem + ?Sized>(core: &mut Core<'_, P>, from: &State) -> Result<State, Refusal> {
     let h = 1e-3;
     let mut x = from.clone();
     x.u.iter_mut().zip(&from.tu).for_each(|(u, t)| *u += h * t);
@@ -155,7 +155,7 @@ fn step_along<P: Problem>(core: &mut Core<'_, P>, from: &State) -> Result<State,
 
 impl CyclePoint {
     /// What is known of a solution of the collocation equations.
-    pub(super) fn of<P: Problem>(
+    pub(super) fn of<P: Problem + ?Sized>(
         equations: &CycleProblem<'_, P>,
         x: &[f64],
         p: &[f64],
@@ -228,7 +228,7 @@ fn assign_errors(multipliers: &mut [Multiplier], finer: &[Multiplier], trivial: 
 }
 
 /// Names of the columns that are observed on cycles.
-pub(super) fn columns<P: Problem>(problem: &P) -> Vec<String> {
+pub(super) fn columns<P: Problem + ?Sized>(problem: &P) -> Vec<String> {
     let own = problem.observables();
     let names: Vec<String> = if own.is_empty() {
         (0..problem.dim().min(MOST_UNKNOWNS)).map(|i| format!("u[{i}]")).collect()
@@ -242,7 +242,10 @@ pub(super) fn columns<P: Problem>(problem: &P) -> Vec<String> {
 }
 
 /// Their values: maximum, minimum and mean over the period.
-pub(super) fn observe<P: Problem>(problem: &P, cycle: &Cycle) -> Result<Vec<f64>, EvalError> {
+pub(super) fn observe<P: Problem + ?Sized>(
+    problem: &P,
+    cycle: &Cycle,
+) -> Result<Vec<f64>, EvalError> {
     let own = problem.observables().len();
     let count = if own == 0 { problem.dim().min(MOST_UNKNOWNS) } else { own };
     let basis = super::basis::Basis::new(cycle.degree);

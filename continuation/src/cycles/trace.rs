@@ -2,12 +2,13 @@
 
 use super::collocation::{CycleProblem, DOUBLING, PERIOD, TORUS};
 use super::cycle::{Cycle, CycleError};
+use super::matrix::CycleMatrix;
 use super::mesh::Orbit;
 use super::point::{CyclePoint, Finer, columns, finer, observe};
 use super::settings::CycleSettings;
 use crate::branch::{Branch, Doubt, Event, EventKind, Point, Statistics, Stop, StopReason};
 use crate::events::Watch;
-use crate::problem::{ParamId, Problem};
+use crate::problem::{DynProblem, ParamId, Problem};
 use crate::settings::{Counting, Settings};
 use crate::step::State;
 use crate::tracer::{Baton, Progress, TraceError, Tracer};
@@ -65,6 +66,7 @@ pub fn trace<P: Problem>(
     watches: &[Watch],
     observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<CycleBranch, CycleError> {
+    let problem: &DynProblem<'_, P::Jacobian> = problem;
     cycle_settings.validate()?;
     let all = problem.parameters();
     let Some(which) = all.iter().position(|q| q.name == parameter).map(ParamId) else {
@@ -122,12 +124,12 @@ pub fn trace<P: Problem>(
     Ok(run.finish(parameter, &p, stopped))
 }
 
-enum Outcome<'a, P: Problem> {
+enum Outcome<'a, P: Problem + ?Sized> {
     End(Stop),
     Restart(Box<(CycleProblem<'a, P>, Baton)>),
 }
 
-struct Run<'a, 's, P: Problem> {
+struct Run<'a, 's, P: Problem + ?Sized> {
     problem: &'a P,
     which: ParamId,
     settings: Settings,
@@ -149,12 +151,12 @@ struct Run<'a, 's, P: Problem> {
     interrupted: bool,
 }
 
-impl<'a, P: Problem> Run<'a, '_, P> {
+impl<'a, P: Problem + ?Sized> Run<'a, '_, P> {
     /// Traces on one mesh until it is to be adapted, or to the end.
     fn segment(
         &mut self,
         equations: &CycleProblem<'a, P>,
-        mut tracer: Tracer<'_, CycleProblem<'a, P>>,
+        mut tracer: Tracer<'_, CycleMatrix>,
         start: &[f64],
         resumed: bool,
         observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
@@ -336,7 +338,7 @@ impl<'a, P: Problem> Run<'a, '_, P> {
         &self,
         equations: &CycleProblem<'a, P>,
         point: &Point,
-        tracer: &Tracer<'_, CycleProblem<'a, P>>,
+        tracer: &Tracer<'_, CycleMatrix>,
     ) -> Option<Stop> {
         let mut p = vec![0.0; self.problem.parameters().len()];
         p[self.which.0] = point.p;

@@ -45,7 +45,7 @@ pub(super) struct Converged {
 }
 
 /// Work space of attempts.
-pub(super) struct Solver<'a, P: Problem> {
+pub(super) struct Solver<'a, P: Problem + ?Sized> {
     problem: &'a P,
     p: Vec<f64>,
     jacobian: P::Jacobian,
@@ -67,7 +67,7 @@ const SHORTEST: f64 = 1e-4;
 /// A correction that is so small a part of the distance to every known solution leads to a new one.
 const APART: f64 = 1e-3;
 
-impl<'a, P: Problem> Solver<'a, P> {
+impl<'a, P: Problem + ?Sized> Solver<'a, P> {
     pub(super) fn new(problem: &'a P, p: &[f64]) -> Self {
         let vector = || vec![0.0; problem.dim()];
         Solver {

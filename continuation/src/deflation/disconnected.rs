@@ -6,7 +6,7 @@ use super::{
 };
 use crate::branch::Branch;
 use crate::near::NearBifurcation;
-use crate::problem::Problem;
+use crate::problem::{DynProblem, Problem};
 use crate::step::dot;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -98,11 +98,12 @@ pub fn disconnected_observed<P: Problem>(
     observer: &mut dyn FnMut(&DeflationReport) -> ControlFlow<()>,
 ) -> Result<Vec<OffBranch>, DeflationError> {
     let branches: Vec<&Branch> = branches.iter().collect();
+    let problem: &DynProblem<'_, P::Jacobian> = problem;
     off_branches(problem, &branches, near, values, settings, observer)
 }
 
 /// [`disconnected_observed`], of branches that lie anywhere.
-pub(crate) fn off_branches<P: Problem>(
+pub(crate) fn off_branches<P: Problem + ?Sized>(
     problem: &P,
     branches: &[&Branch],
     near: &[NearBifurcation],
@@ -175,7 +176,7 @@ pub(crate) fn off_branches<P: Problem>(
 /// # Errors
 /// When the branch is not one of this problem, a setting is out of range, or a vector has the wrong
 /// length or is not finite.
-pub fn lies_on<P: Problem>(
+pub fn lies_on<P: Problem + ?Sized>(
     problem: &P,
     branch: &Branch,
     u: &[f64],
@@ -199,7 +200,7 @@ pub fn lies_on<P: Problem>(
 
 /// Values of the parameter on one side of a near-bifurcation, inside or outside of the range of the
 /// branches. Beyond the end of a branch, where it goes on without being known, there are none.
-fn offsets<P: Problem>(
+fn offsets<P: Problem + ?Sized>(
     branches: &[&Branch],
     which: usize,
     problem: &P,
@@ -227,7 +228,7 @@ fn offsets<P: Problem>(
 }
 
 /// The search at the parameters `p` beside a near-bifurcation.
-fn beside<'a, P: Problem>(
+fn beside<'a, P: Problem + ?Sized>(
     problem: &'a P,
     branches: &[&Branch],
     which: usize,

@@ -9,7 +9,7 @@ use crate::problem::Problem;
 use crate::step::dot;
 
 /// Known solutions, and work space for distances from them.
-pub(super) struct Known<'a, P: Problem> {
+pub(super) struct Known<'a, P: Problem + ?Sized> {
     problem: &'a P,
     /// The solutions.
     pub(super) solutions: Vec<Vec<f64>>,
@@ -19,7 +19,7 @@ pub(super) struct Known<'a, P: Problem> {
     metric: Vec<f64>,
 }
 
-impl<'a, P: Problem> Known<'a, P> {
+impl<'a, P: Problem + ?Sized> Known<'a, P> {
     pub(super) fn new(problem: &'a P) -> Self {
         let n = problem.dim();
         Known {

@@ -159,7 +159,7 @@ pub struct Deflated {
 }
 
 /// A search for further solutions at one parameter vector.
-pub struct Deflation<'a, P: Problem> {
+pub struct Deflation<'a, P: Problem + ?Sized> {
     problem: &'a P,
     p: Vec<f64>,
     settings: DeflationSettings,
@@ -178,7 +178,7 @@ struct Start {
     tried: Option<usize>,
 }
 
-impl<'a, P: Problem> Deflation<'a, P> {
+impl<'a, P: Problem + ?Sized> Deflation<'a, P> {
     /// Prepares a search at the parameters `p`.
     ///
     /// # Errors
@@ -449,7 +449,7 @@ impl<'a, P: Problem> Deflation<'a, P> {
 ///
 /// # Errors
 /// When a setting is out of range, or a vector has the wrong length or is not finite.
-pub fn further_solutions<P: Problem>(
+pub fn further_solutions<P: Problem + ?Sized>(
     problem: &P,
     p: &[f64],
     known: &[Vec<f64>],
@@ -460,7 +460,10 @@ pub fn further_solutions<P: Problem>(
 }
 
 /// Checks that a branch can be one of the problem; the index of its parameter.
-fn check_branch<P: Problem>(problem: &P, branch: &Branch) -> Result<usize, DeflationError> {
+fn check_branch<P: Problem + ?Sized>(
+    problem: &P,
+    branch: &Branch,
+) -> Result<usize, DeflationError> {
     let names = problem.parameters();
     let Some(which) = names.iter().position(|q| q.name == branch.parameter) else {
         return Err(DeflationError::Foreign { name: branch.parameter.clone() });

@@ -21,7 +21,7 @@ pub(super) struct Passage {
 
 impl Passage {
     /// Whether the solution `u` can be the one that is approximated.
-    pub(super) fn covers<P: Problem>(&self, known: &mut Known<'_, P>, u: &[f64]) -> bool {
+    pub(super) fn covers<P: Problem + ?Sized>(&self, known: &mut Known<'_, P>, u: &[f64]) -> bool {
         let [a, b] = &self.between;
         let size = known.norm(&self.u);
         known.distance(u, &self.u) <= NEAR * known.distance(a, b) + 1e-6 * size
@@ -40,7 +40,7 @@ pub(super) struct Passing {
 ///
 /// Newton's method may lead from two passages, near a fold say, to the same solution: then it is
 /// deflated. A solution far from the passage is not the branch's.
-pub(super) fn solutions<P: Problem>(
+pub(super) fn solutions<P: Problem + ?Sized>(
     problem: &P,
     branch: &Branch,
     p: &[f64],
@@ -86,7 +86,7 @@ pub(super) fn solutions<P: Problem>(
 }
 
 /// How far the branch leads from its first point.
-pub(super) fn extent<P: Problem>(known: &mut Known<'_, P>, branch: &Branch) -> f64 {
+pub(super) fn extent<P: Problem + ?Sized>(known: &mut Known<'_, P>, branch: &Branch) -> f64 {
     let Some(first) = branch.points.first() else { return 0.0 };
     branch.points.iter().map(|point| known.distance(&point.u, &first.u)).fold(0.0, f64::max)
 }

@@ -21,7 +21,7 @@ pub(super) struct Soft {
 }
 
 /// The `count` softest directions at `u`, the softest first; none where the problem has no value.
-pub(super) fn soft<P: Problem>(
+pub(super) fn soft<P: Problem + ?Sized>(
     problem: &P,
     known: &mut Known<'_, P>,
     u: &[f64],
@@ -68,7 +68,11 @@ pub(super) fn soft<P: Problem>(
 }
 
 /// Gram-Schmidt in the problem's metric; vectors that vanish are dropped.
-fn orthonormalise<P: Problem>(known: &mut Known<'_, P>, problem: &P, vectors: &mut Vec<Vec<f64>>) {
+fn orthonormalise<P: Problem + ?Sized>(
+    known: &mut Known<'_, P>,
+    problem: &P,
+    vectors: &mut Vec<Vec<f64>>,
+) {
     let mut done: Vec<Vec<f64>> = Vec::with_capacity(vectors.len());
     let mut m = vec![0.0; problem.dim()];
     for mut v in vectors.drain(..) {
@@ -92,7 +96,7 @@ fn orthonormalise<P: Problem>(known: &mut Known<'_, P>, problem: &P, vectors: &m
 
 /// The multiple of `v` at which the Jacobian's action on it has changed by as much as it is;
 /// `None` if it does not change within twelve decades of `guess`.
-pub(super) fn amplitude<P: Problem>(
+pub(super) fn amplitude<P: Problem + ?Sized>(
     problem: &P,
     u: &[f64],
     p: &[f64],

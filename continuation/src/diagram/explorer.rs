@@ -9,10 +9,11 @@ use super::{
 use crate::branch::{Branch, EventKind, Statistics, Stop, StopReason};
 use crate::deflation::{DeflationReport, OffBranch, off_branches};
 use crate::events::Watch;
-use crate::near::{NearBifurcation, near_bifurcations};
-use crate::problem::Problem;
+use crate::linalg::Matrix;
+use crate::near::{self, NearBifurcation};
+use crate::problem::DynProblem;
 use crate::settings::Settings;
-use crate::tracer::{Progress, TraceError, Tracer, both_ways};
+use crate::tracer::{Progress, TraceError, Tracer, both};
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
@@ -42,8 +43,8 @@ const MANY: usize = 8;
 pub(super) type Observer<'o> = dyn FnMut(&DiagramProgress<'_>) -> ControlFlow<()> + 'o;
 
 /// Explores a diagram branch by branch.
-pub struct Explorer<'a, P: Problem> {
-    problem: &'a P,
+pub struct Explorer<'a, J: Matrix> {
+    problem: &'a DynProblem<'a, J>,
     parameter: String,
     start: (Vec<f64>, Vec<f64>),
     settings: DiagramSettings,
@@ -59,14 +60,14 @@ pub struct Explorer<'a, P: Problem> {
     stopped: Option<DiagramStop>,
 }
 
-impl<'a, P: Problem> Explorer<'a, P> {
+impl<'a, J: Matrix> Explorer<'a, J> {
     /// Prepares the diagram of the branch through the solution near `u`, in the named parameter.
     /// `u`, `p` and `parameter` are those of [`Tracer::new`]; `watches` hold on every branch.
     ///
     /// # Errors
     /// When the settings or the start are unusable, or nothing bounds the first branch.
     pub fn new(
-        problem: &'a P,
+        problem: &'a DynProblem<'a, J>,
         parameter: &str,
         u: &[f64],
         p: &[f64],
@@ -80,7 +81,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
             return Err(DiagramError::Unbounded);
         }
         // what is wrong with the start shows here
-        Tracer::new(problem, parameter, u, p, settings.trace.clone())?.watching(watches)?;
+        Tracer::of(problem, parameter, u, p, settings.trace.clone())?.watching(watches)?;
         Ok(Explorer {
             problem,
             parameter: parameter.to_owned(),
@@ -252,7 +253,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
     fn near(&self, branch: &Branch) -> Vec<NearBifurcation> {
         let Some(search) = &self.settings.search else { return Vec::new() };
         // a branch that was traced is one of this problem, with a value at every point
-        near_bifurcations(self.problem, branch, search.near).unwrap_or_default()
+        near::beside(self.problem, branch, search.near).unwrap_or_default()
     }
 
     /// A solution beside the next near-bifurcation that is on no known branch. Beside each the
@@ -305,17 +306,16 @@ impl<'a, P: Problem> Explorer<'a, P> {
         if let Task::Off { u, p, .. } = task {
             let (name, settings) = (&self.parameter, self.within(settings));
             let mut hear = |at: &Progress| observer(at, None);
-            return Ok(both_ways(problem, name, u, p, settings, watches, &mut hear)?);
+            return Ok(both(problem, name, (u, p), settings, watches, &mut hear)?);
         }
         let Origin::Switch { branch, event, direction, forward } = self.origin(task) else {
             let (u, p) = &self.start;
             if settings.target.is_none() && settings.domain.is_some() {
                 let name = &self.parameter;
                 let mut hear = |at: &Progress| observer(at, None);
-                return Ok(both_ways(problem, name, u, p, settings, watches, &mut hear)?);
+                return Ok(both(problem, name, (u, p), settings, watches, &mut hear)?);
             }
-            let tracer =
-                Tracer::new(problem, &self.parameter, u, p, settings)?.watching(watches)?;
+            let tracer = Tracer::of(problem, &self.parameter, u, p, settings)?.watching(watches)?;
             return Ok(follow(problem, tracer, part, &self.joints, observer));
         };
         let settings = self.within(settings);
@@ -323,7 +323,7 @@ impl<'a, P: Problem> Explorer<'a, P> {
         let event = &from.events[event];
         let leaving = |crossing: &crate::branch::Crossing| {
             let direction = &crossing.leaving[direction];
-            Tracer::leaving(problem, from, event, direction, forward, settings)?.watching(watches)
+            Tracer::off(problem, from, event, direction, forward, settings)?.watching(watches)
         };
         let foreign = TraceError::Foreign { what: "the event is no branch point" };
         Ok(match event.crossing().ok_or(foreign).and_then(leaving) {

@@ -19,9 +19,9 @@ pub(super) type Listener<'o> =
     dyn FnMut(&Progress, Option<&dyn Fn() -> Part>) -> ControlFlow<()> + 'o;
 
 /// Traces to the end from the beginning or from `part`, or to a joint from which the branch would go on along a ray that is taken.
-pub(super) fn follow<P: Problem>(
+pub(super) fn follow<P: Problem + ?Sized>(
     problem: &P,
-    mut tracer: Tracer<'_, P>,
+    mut tracer: Tracer<'_, P::Jacobian>,
     part: Option<Part>,
     joints: &Joints,
     observer: &mut Listener<'_>,
@@ -57,9 +57,9 @@ pub(super) fn follow<P: Problem>(
 }
 
 /// Whether the branch goes on from this point along a ray that is taken.
-fn leads_back<P: Problem>(
+fn leads_back<P: Problem + ?Sized>(
     problem: &P,
-    tracer: &Tracer<'_, P>,
+    tracer: &Tracer<'_, P::Jacobian>,
     event: usize,
     point: &Point,
     joints: &Joints,

@@ -50,13 +50,13 @@ pub(super) struct Joints {
     range: f64,
 }
 
-fn length<P: Problem>(problem: &P, x: &[f64]) -> f64 {
+fn length<P: Problem + ?Sized>(problem: &P, x: &[f64]) -> f64 {
     let mut y = vec![0.0; x.len()];
     problem.metric(x, &mut y);
     dot(x, &y).max(0.0).sqrt()
 }
 
-fn apart<P: Problem>(problem: &P, a: &[f64], b: &[f64]) -> f64 {
+fn apart<P: Problem + ?Sized>(problem: &P, a: &[f64], b: &[f64]) -> f64 {
     let d: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
     length(problem, &d)
 }
@@ -67,7 +67,7 @@ impl Joints {
     }
 
     /// The joint at this branch point, if it is known.
-    pub(super) fn find<P: Problem>(
+    pub(super) fn find<P: Problem + ?Sized>(
         &self,
         problem: &P,
         u: &[f64],
@@ -82,7 +82,7 @@ impl Joints {
     }
 
     /// The ray of `node` that leaves it along `sign` times this direction.
-    pub(super) fn ray<P: Problem>(
+    pub(super) fn ray<P: Problem + ?Sized>(
         &self,
         problem: &P,
         node: usize,
@@ -107,7 +107,7 @@ impl Joints {
 
     /// Learns that event `event` of branch `id`, a branch point, is passed; `ends` says that the
     /// branch ends there. The joint's index.
-    pub(super) fn pass<P: Problem>(
+    pub(super) fn pass<P: Problem + ?Sized>(
         &mut self,
         problem: &P,
         id: usize,
@@ -132,7 +132,7 @@ impl Joints {
         node
     }
 
-    fn create<P: Problem>(
+    fn create<P: Problem + ?Sized>(
         &mut self,
         problem: &P,
         id: usize,
@@ -178,7 +178,7 @@ impl Joints {
 
     /// Learns that branch `id` begins along a ray; `closed` says that it comes back to its
     /// beginning.
-    pub(super) fn begin<P: Problem>(
+    pub(super) fn begin<P: Problem + ?Sized>(
         &mut self,
         problem: &P,
         id: usize,

@@ -58,7 +58,7 @@ impl Rung {
 
 /// Order and place of the fold near `at` in the step of length `h` from `a` to `b`, where dp/ds is in
 /// error by `missed`.
-pub(crate) fn flat_fold<P: Problem>(
+pub(crate) fn flat_fold<P: Problem + ?Sized>(
     core: &mut Core<'_, P>,
     (a, b): (&State, &State),
     h: f64,

@@ -25,7 +25,7 @@ const SHORTEST: f64 = 1e-14;
 
 /// Locates a zero or an extremum of an observable between `a` and `b`, a scaled distance `h` apart;
 /// its state goes to `x`. `None` where the observable has a pole or a jump instead.
-pub(crate) fn locate_watched<P: Problem>(
+pub(crate) fn locate_watched<P: Problem + ?Sized>(
     core: &mut Core<'_, P>,
     (a, b): (&State, &State),
     h: f64,

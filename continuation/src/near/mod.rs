@@ -22,7 +22,7 @@ mod settings;
 pub use settings::NearSettings;
 
 use crate::branch::{Branch, Direction, EventKind};
-use crate::problem::{EvalError, ParamId, Problem};
+use crate::problem::{DynProblem, EvalError, ParamId, Problem};
 use crate::settings::SettingsError;
 use crate::singular::{Defect, Extended, Probe, find, max_abs};
 use crate::step::{Weights, dot};
@@ -134,6 +134,15 @@ pub fn near_bifurcations<P: Problem>(
     branch: &Branch,
     settings: NearSettings,
 ) -> Result<Vec<NearBifurcation>, NearError> {
+    beside(problem as &DynProblem<'_, P::Jacobian>, branch, settings)
+}
+
+/// [`near_bifurcations`] of a problem of unknown type.
+pub(crate) fn beside<P: Problem + ?Sized>(
+    problem: &P,
+    branch: &Branch,
+    settings: NearSettings,
+) -> Result<Vec<NearBifurcation>, NearError> {
     settings.validate()?;
     let which = check(problem, branch)?;
     let weights = weights(problem, branch, which);
@@ -145,7 +154,7 @@ pub fn near_bifurcations<P: Problem>(
 }
 
 /// The index of the branch's parameter.
-fn check<P: Problem>(problem: &P, branch: &Branch) -> Result<usize, NearError> {
+fn check<P: Problem + ?Sized>(problem: &P, branch: &Branch) -> Result<usize, NearError> {
     let foreign = |what| NearError::Foreign { what };
     let parameters = problem.parameters();
     let which = parameters
@@ -162,7 +171,7 @@ fn check<P: Problem>(problem: &P, branch: &Branch) -> Result<usize, NearError> {
 }
 
 /// The ranges of unknowns and parameter along the branch.
-fn weights<P: Problem>(problem: &P, branch: &Branch, which: usize) -> Weights {
+fn weights<P: Problem + ?Sized>(problem: &P, branch: &Branch, which: usize) -> Weights {
     let p = || branch.points.iter().map(|point| point.p);
     let range = p().fold(f64::NEG_INFINITY, f64::max) - p().fold(f64::INFINITY, f64::min);
     let positive = |x: f64| (x.is_finite() && x > 0.0).then_some(x);
@@ -194,7 +203,7 @@ fn difference(a: &Extended, b: &Extended) -> Extended {
 }
 
 /// Imperfect branch points, where the singular value has minima.
-fn dips<P: Problem>(
+fn dips<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     branch: &Branch,
     max_gap: f64,
@@ -275,7 +284,7 @@ fn around(sizes: &[f64], lowest: usize) -> Vec<usize> {
 }
 
 /// The branch point of which the branch at `z` is an unfolding, if it is one.
-fn imperfect<P: Problem>(
+fn imperfect<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     z: &Extended,
     tangent: &Extended,
@@ -317,7 +326,7 @@ fn imperfect<P: Problem>(
 }
 
 /// Folds in a row, the parameters of which differ little.
-fn folds<P: Problem>(
+fn folds<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     branch: &Branch,
     max_gap: f64,

@@ -60,7 +60,7 @@ pub(super) struct Ray {
 }
 
 /// The reduced equations of a double point.
-pub(super) struct Reduced<'f, 'p, 'a, P: Problem> {
+pub(super) struct Reduced<'f, 'p, 'a, P: Problem + ?Sized> {
     pub(super) probe: &'p mut Probe<'a, P>,
     pub(super) frame: &'f mut Frame,
     pub(super) z: &'f Extended,
@@ -77,7 +77,7 @@ struct Solved {
     offset: Extended,
 }
 
-impl<P: Problem> Reduced<'_, '_, '_, P> {
+impl<P: Problem + ?Sized> Reduced<'_, '_, '_, P> {
     /// The branches.
     pub(super) fn separate(&mut self) -> Separated {
         if self.across.len() == 2 { self.separate_two() } else { self.separate_more() }

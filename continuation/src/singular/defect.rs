@@ -26,7 +26,7 @@ impl Defect {
 
     /// The singular value at `z`, and the tangent, of unit scaled length; `None` where the bordered
     /// matrix is singular. Any vector with a part along the branch will do for `along`.
-    pub(crate) fn at<P: Problem>(
+    pub(crate) fn at<P: Problem + ?Sized>(
         &mut self,
         probe: &mut Probe<'_, P>,
         z: &Extended,
@@ -43,7 +43,11 @@ impl Defect {
         Ok(found)
     }
 
-    fn begin<P: Problem>(&mut self, probe: &mut Probe<'_, P>, along: &Extended) -> Option<()> {
+    fn begin<P: Problem + ?Sized>(
+        &mut self,
+        probe: &mut Probe<'_, P>,
+        along: &Extended,
+    ) -> Option<()> {
         let n = probe.dim();
         let row = probe.covector(along);
         self.frame.set_row(0, &row);
@@ -60,7 +64,7 @@ impl Defect {
     }
 
     /// Value and tangent from the latest factors, and borders for the next point.
-    fn renew<P: Problem>(&mut self, probe: &mut Probe<'_, P>) -> Option<(f64, Extended)> {
+    fn renew<P: Problem + ?Sized>(&mut self, probe: &mut Probe<'_, P>) -> Option<(f64, Extended)> {
         let mut column: Vec<f64> = self.frame.left(probe, 0);
         let (mut v0, g0) = self.frame.right(probe, 0);
         let (mut v1, g1) = self.frame.right(probe, 1);

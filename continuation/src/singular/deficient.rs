@@ -38,7 +38,7 @@ const CORRECTIONS: usize = 6;
 
 /// The rank defect that `[F_u F_p]` has at `z` and at every solution near by, if it has one. No state
 /// outside `domain` is asked for.
-pub(crate) fn deficient_everywhere<P: Problem>(
+pub(crate) fn deficient_everywhere<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     z: &Extended,
     domain: Option<(f64, f64)>,
@@ -68,7 +68,7 @@ pub(crate) fn deficient_everywhere<P: Problem>(
 
 /// Prepares the borders at `z`; whether the bordered matrix is regular, `None` if it is so singular
 /// that nothing can be said.
-fn begin<P: Problem>(
+fn begin<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     frame: &mut Frame,
     z: &Extended,
@@ -102,7 +102,7 @@ fn begin<P: Problem>(
 }
 
 /// A direction without any pattern, of about unit length in the scaled metric.
-fn direction<P: Problem>(probe: &mut Probe<'_, P>, seed: usize) -> Extended {
+fn direction<P: Problem + ?Sized>(probe: &mut Probe<'_, P>, seed: usize) -> Extended {
     let n = probe.dim();
     let mut d = Extended { u: (0..n).map(|m| arbitrary(seed, m)).collect(), p: 0.0 };
     let norm = probe.norm(&d);
@@ -114,7 +114,7 @@ fn direction<P: Problem>(probe: &mut Probe<'_, P>, seed: usize) -> Extended {
 }
 
 /// `[F_u F_p] x` at the assembled point.
-fn product<P: Problem>(probe: &Probe<'_, P>, x: &Extended) -> Vec<f64> {
+fn product<P: Problem + ?Sized>(probe: &Probe<'_, P>, x: &Extended) -> Vec<f64> {
     let mut y = vec![0.0; x.u.len()];
     probe.jacobian.mul(&x.u, &mut y);
     for (y, f) in y.iter_mut().zip(&probe.by_parameter) {
@@ -124,7 +124,7 @@ fn product<P: Problem>(probe: &Probe<'_, P>, x: &Extended) -> Vec<f64> {
 }
 
 /// Size of the rows of `[F_u F_p]`, for unknowns and parameter in units of their scales.
-fn row_sizes<P: Problem>(probe: &mut Probe<'_, P>) -> Vec<f64> {
+fn row_sizes<P: Problem + ?Sized>(probe: &mut Probe<'_, P>) -> Vec<f64> {
     let mut sizes = vec![0.0_f64; probe.dim()];
     for seed in 11..14 {
         let d = direction(probe, seed);
@@ -136,7 +136,7 @@ fn row_sizes<P: Problem>(probe: &mut Probe<'_, P>) -> Vec<f64> {
 }
 
 /// Whether what the borders hold is the kernel to rounding.
-fn vanishes<P: Problem>(
+fn vanishes<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     frame: &mut Frame,
     at: &Extended,
@@ -160,7 +160,7 @@ fn vanishes<P: Problem>(
 }
 
 /// Whether the kernel is as large at solutions near `z`, on all sides.
-fn near_by<P: Problem>(
+fn near_by<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     frame: &mut Frame,
     z: &Extended,
@@ -196,7 +196,7 @@ fn near_by<P: Problem>(
 
 /// Whether the kernel is as large at the solution near `at` of the equations that are left; `None`
 /// where there is none.
-fn onto<P: Problem>(
+fn onto<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     frame: &mut Frame,
     at: &mut Extended,
@@ -249,7 +249,7 @@ struct Ranked {
 
 impl Ranked {
     /// At the assembled point `at`.
-    fn of<P: Problem>(probe: &mut Probe<'_, P>, at: &Extended) -> Option<Self> {
+    fn of<P: Problem + ?Sized>(probe: &mut Probe<'_, P>, at: &Extended) -> Option<Self> {
         let n = probe.dim();
         let Weights { unknowns, parameter } = probe.weights;
         let mut columns: Vec<f64> = vec![unknowns; n];
@@ -313,7 +313,7 @@ impl Ranked {
 }
 
 /// [`deficient_everywhere`] by singular values.
-fn of_small<P: Problem>(
+fn of_small<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     z: &Extended,
     domain: Option<(f64, f64)>,
@@ -354,7 +354,7 @@ fn of_small<P: Problem>(
 }
 
 /// The solution, no farther than `far`, of the equations that are left.
-fn solve_small<P: Problem>(
+fn solve_small<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     mut at: Extended,
     far: f64,

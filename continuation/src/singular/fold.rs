@@ -8,7 +8,7 @@ use crate::step::{State, dot};
 
 /// `p″ = −ψᵀ F_zz[t, t] / ψᵀ F_p` along the unit tangent `t`, with `left` = `ψ / ψᵀ F_p`; and a bound of
 /// what errors of the problem's derivatives do to dp/ds.
-pub(crate) fn fold_form<P: Problem>(
+pub(crate) fn fold_form<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     x: &State,
     left: &[f64],

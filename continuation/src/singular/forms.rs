@@ -34,7 +34,7 @@ pub(super) struct Analysed {
 
 /// Analyses a point with a kernel of one dimension; `expected` is the direction in which the
 /// traced branch passes.
-pub(super) fn simple<P: Problem>(
+pub(super) fn simple<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     at: &mut Singular,
     expected: &Extended,
@@ -108,7 +108,7 @@ pub(super) fn simple<P: Problem>(
 }
 
 /// A tangent of unit length in the problem's metric.
-pub(super) fn direction<P: Problem>(
+pub(super) fn direction<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     mut v: Extended,
     bend: f64,
@@ -151,7 +151,7 @@ struct Bent {
     criticality: Option<Criticality>,
 }
 
-fn pitchfork<P: Problem>(
+fn pitchfork<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     at: &mut Singular,
     trunk: &Extended,

@@ -24,7 +24,7 @@ const FACTOR: f64 = 4.0;
 
 /// Distance between the two branches, in the scaled metric: 0 where they cross, to rounding, infinite
 /// where there is nothing real.
-pub(super) fn between_branches<P: Problem>(
+pub(super) fn between_branches<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     found: &Singular,
 ) -> Result<f64, EvalError> {

@@ -29,7 +29,7 @@ pub(crate) struct HopfPoint {
 
 /// Polishes a Hopf point near the scaled distance `at` from `a`, with eigenvalues near `±iω`.
 /// `None` where the matrix has no complex form; the bracketing search then has the last word.
-pub(crate) fn locate_hopf<P: Problem>(
+pub(crate) fn locate_hopf<P: Problem + ?Sized>(
     core: &mut Core<'_, P>,
     a: &State,
     b: &State,
@@ -125,7 +125,7 @@ impl Complex {
 }
 
 /// Null vectors of `f_u − iω M`, bordered.
-struct Critical<P: Problem> {
+struct Critical<P: Problem + ?Sized> {
     right: Complex,
     left: Complex,
     /// `M` times the right vector.
@@ -135,7 +135,7 @@ struct Critical<P: Problem> {
     mass: Mass<P>,
 }
 
-impl<P: Problem> Critical<P> {
+impl<P: Problem + ?Sized> Critical<P> {
     /// Bordered null vectors at an assembled point; borders from before, or arbitrary ones that
     /// are improved once.
     fn of(probe: &Probe<'_, P>, omega: f64, border: Option<(Complex, Complex)>) -> Option<Self> {
@@ -208,9 +208,9 @@ impl<P: Problem> Critical<P> {
 }
 
 /// The mass matrix; the identity where the problem has none.
-struct Mass<P: Problem>(P::Jacobian);
+struct Mass<P: Problem + ?Sized>(P::Jacobian);
 
-impl<P: Problem> Mass<P> {
+impl<P: Problem + ?Sized> Mass<P> {
     fn of(probe: &Probe<'_, P>) -> Option<Self> {
         let mut m = probe.problem.new_jacobian();
         m.set_zero();
@@ -241,7 +241,7 @@ impl<P: Problem> Mass<P> {
 }
 
 /// The normal form at a located point; `t` is the branch's tangent there.
-fn normal_form<P: Problem>(
+fn normal_form<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     z: &Extended,
     t: &Extended,
@@ -267,7 +267,7 @@ fn normal_form<P: Problem>(
 /// The first Lyapunov coefficient and its estimated error at `z`, where `probe` is assembled, with
 /// critical eigenvalues `±iω` and the null vectors of `f_u − iωM`, their real and imaginary parts in
 /// turn. `None` where the matrix has no complex form.
-pub(crate) fn lyapunov_coefficient<P: Problem>(
+pub(crate) fn lyapunov_coefficient<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     z: &Extended,
     omega: f64,
@@ -302,7 +302,7 @@ pub(crate) fn lyapunov_coefficient<P: Problem>(
     Ok(Some((value, (value - check).abs())))
 }
 
-fn lyapunov<P: Problem>(
+fn lyapunov<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     z: &Extended,
     omega: f64,

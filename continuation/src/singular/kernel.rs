@@ -114,13 +114,13 @@ impl Frame {
         self.bordered.column_mut(j + 1).copy_from_slice(b);
     }
 
-    pub(super) fn factor<P: Problem>(&mut self, probe: &mut Probe<'_, P>) {
+    pub(super) fn factor<P: Problem + ?Sized>(&mut self, probe: &mut Probe<'_, P>) {
         self.bordered.column_mut(0).copy_from_slice(&probe.by_parameter);
         self.bordered.factor(&mut probe.jacobian);
     }
 
     /// Column `i` of `V`, and of `G`.
-    pub(super) fn right<P: Problem>(
+    pub(super) fn right<P: Problem + ?Sized>(
         &mut self,
         probe: &mut Probe<'_, P>,
         i: usize,
@@ -133,7 +133,11 @@ impl Frame {
     }
 
     /// Row `j` of `W`.
-    pub(super) fn left<P: Problem>(&mut self, probe: &mut Probe<'_, P>, j: usize) -> Vec<f64> {
+    pub(super) fn left<P: Problem + ?Sized>(
+        &mut self,
+        probe: &mut Probe<'_, P>,
+        j: usize,
+    ) -> Vec<f64> {
         self.rhs.fill(0.0);
         self.tail.fill(0.0);
         self.tail[j + 1] = 1.0;
@@ -142,7 +146,7 @@ impl Frame {
     }
 
     /// Solves `K [x; β] = [r; 0]`.
-    pub(crate) fn solve<P: Problem>(
+    pub(crate) fn solve<P: Problem + ?Sized>(
         &mut self,
         probe: &mut Probe<'_, P>,
         r: &[f64],
@@ -155,7 +159,7 @@ impl Frame {
 
     /// Borders by what the latest factors say is nearly in the kernels: the right vectors,
     /// orthonormalised, and the left ones, normalised.
-    pub(super) fn renew<P: Problem>(&mut self, probe: &mut Probe<'_, P>) -> Option<()> {
+    pub(super) fn renew<P: Problem + ?Sized>(&mut self, probe: &mut Probe<'_, P>) -> Option<()> {
         let mut right: Vec<Extended> = Vec::with_capacity(self.k + 1);
         for i in 0..=self.k {
             let (mut v, _) = self.right(probe, i);
@@ -186,7 +190,11 @@ impl Frame {
     /// Turns the right vectors within their span so that the first is the nearest to `direction`:
     /// where they mix the branch with what leaves it, the form's entries must cancel to tell the two
     /// apart, and differences along a mixture are no better than its natural amplitude allows.
-    fn turn<P: Problem>(&mut self, probe: &mut Probe<'_, P>, direction: &Extended) -> Option<()> {
+    fn turn<P: Problem + ?Sized>(
+        &mut self,
+        probe: &mut Probe<'_, P>,
+        direction: &Extended,
+    ) -> Option<()> {
         let along = probe.covector(direction);
         let right: Vec<Extended> = (0..=self.k).map(|i| self.right(probe, i).0).collect();
         let mut first = Extended::zero(direction.u.len());
@@ -234,7 +242,7 @@ pub(crate) fn arbitrary(seed: usize, i: usize) -> f64 {
 /// Finds the point near `seed` where the rank is short by `k`; `tangent` is a direction of the
 /// branch that is followed. `is_useless` says of a state, and of the radius about it in which the
 /// point will lie, whether it is none that is sought.
-pub(crate) fn find<P: Problem>(
+pub(crate) fn find<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     seed: &Extended,
     tangent: &Extended,
@@ -262,8 +270,7 @@ pub(crate) fn find<P: Problem>(
     let mut last = f64::INFINITY;
     let mut known = None;
     for iteration in 0..MAX_ITERATIONS {
-        let source = known.take().map_or(Source::steering(k), Source::Known);
-        let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, source)?;
+        let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, known.take())?;
         let residual: Vec<f64> = probe.residual.iter().map(|r| -r).collect();
         let (mut step, beta) = frame.solve(probe, &residual);
         let y = least_squares(&local.matrix(), &local.defect()).ok_or(Failure::NoConvergence)?;
@@ -312,7 +319,7 @@ pub(crate) fn find<P: Problem>(
     Err(Failure::NoConvergence)
 }
 
-fn finish<P: Problem>(
+fn finish<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     mut frame: Frame,
     z: Extended,
@@ -329,7 +336,7 @@ fn finish<P: Problem>(
     if frame.k > 1 {
         amplitude.clear();
     }
-    let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, Source::Differences)?;
+    let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, None)?;
     // lengths, in natural amplitudes, over which the quadratic form makes the defect and the
     // unfolding
     let x = &amplitude;
@@ -368,32 +375,15 @@ struct Local {
 /// `form[j][i][l] = w_jᵀ F_zz[v_i, v_l]`.
 type Form = Vec<Vec<Vec<f64>>>;
 
-/// Where a quadratic form comes from.
-enum Source {
-    /// That of a point near by, whose differences are saved.
-    Known(Form),
-    /// From two places for each vector.
-    Rough,
-    /// From four.
-    Differences,
-}
-
-impl Source {
-    /// What an iteration for kernels of `k` dimensions needs: the equations for larger ones are
-    /// consistent only if the form is right.
-    fn steering(k: usize) -> Self {
-        if k == 1 { Source::Rough } else { Source::Differences }
-    }
-}
-
 impl Local {
-    fn of<P: Problem>(
+    /// `known` is the form of a point near by, whose differences are saved.
+    fn of<P: Problem + ?Sized>(
         probe: &mut Probe<'_, P>,
         frame: &mut Frame,
         z: &Extended,
         amplitude: &mut Vec<f64>,
         tangent: &Extended,
-        source: Source,
+        known: Option<Form>,
     ) -> Result<Self, Failure> {
         let k = frame.k;
         let (mut right, mut g) = (Vec::new(), vec![Vec::new(); k]);
@@ -408,10 +398,9 @@ impl Local {
         if amplitude.is_empty() {
             *amplitude = amplitudes(probe, z, &right, tangent)?;
         }
-        let form = match source {
-            Source::Known(form) => form,
-            Source::Rough => quadratic_form(probe, z, (&right, &left), amplitude, true)?,
-            Source::Differences => quadratic_form(probe, z, (&right, &left), amplitude, false)?,
+        let form = match known {
+            Some(form) => form,
+            None => quadratic_form(probe, z, (&right, &left), amplitude)?,
         };
         let norm = |x: &[f64]| crate::step::dot(x, x).sqrt();
         let widest = right.iter().zip(&*amplitude).map(|(v, x)| norm(&v.u) * x);
@@ -471,21 +460,17 @@ impl Local {
 }
 
 /// `form[j][i][l] = w_jᵀ F_zz[v_i, v_l]`, by differences along each right vector.
-fn quadratic_form<P: Problem>(
+fn quadratic_form<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     z: &Extended,
     (right, left): (&[Extended], &[Vec<f64>]),
     amplitude: &[f64],
-    roughly: bool,
 ) -> Result<Form, EvalError> {
     let k = left.len();
     let mut form = vec![vec![vec![0.0; k + 1]; k + 1]; k];
     let all: Vec<&Extended> = right.iter().collect();
     for (l, v) in right.iter().enumerate() {
-        let second = match roughly {
-            true => probe.second_roughly(z, v, amplitude[l], &all)?,
-            false => probe.second(z, v, amplitude[l], &all)?,
-        };
+        let second = probe.second(z, v, amplitude[l], &all)?;
         for (j, w) in left.iter().enumerate() {
             for (i, y) in second.iter().enumerate() {
                 form[j][i][l] = crate::step::dot(w, y);
@@ -507,7 +492,7 @@ fn quadratic_form<P: Problem>(
 
 /// Natural amplitudes of the right vectors, measured against what the branch's own direction does
 /// to the Jacobian over the range of the parameter.
-fn amplitudes<P: Problem>(
+fn amplitudes<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     z: &Extended,
     right: &[Extended],

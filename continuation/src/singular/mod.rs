@@ -74,7 +74,7 @@ struct Segment<'s> {
 /// Locates the branch point with a kernel of `k` dimensions between `a` and `b`, a scaled length
 /// `h` apart, or the `k` simple ones that lie there close together. Newton's method starts at the
 /// parts `seeds` of the step, in turn.
-pub(crate) fn locate_branch_points<P: Problem>(
+pub(crate) fn locate_branch_points<P: Problem + ?Sized>(
     core: &mut Core<'_, P>,
     a: &State,
     b: &State,
@@ -119,7 +119,7 @@ pub(crate) fn locate_branch_points<P: Problem>(
 }
 
 /// The same of a simple one that is known to be near `state`, a state of the branch between `a` and `b`.
-pub(crate) fn locate_branch_point_near<P: Problem>(
+pub(crate) fn locate_branch_point_near<P: Problem + ?Sized>(
     core: &mut Core<'_, P>,
     (a, b): (&State, &State),
     h: f64,
@@ -148,7 +148,7 @@ fn distinct(mut points: Vec<Crossed>, k: usize) -> Option<Vec<Crossed>> {
 
 /// Newton's method from `z`; the point found must be on the branch, within the step, and be crossed
 /// along the branch.
-fn attempt<P: Problem>(
+fn attempt<P: Problem + ?Sized>(
     core: &mut Core<'_, P>,
     probe: &mut Probe<'_, P>,
     segment: Segment<'_>,
@@ -249,7 +249,7 @@ fn attempt<P: Problem>(
 }
 
 /// Direction of the interpolated branch at a distance `at`, of unit scaled length.
-fn tangent_at<P: Problem>(
+fn tangent_at<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     a: &State,
     b: &State,

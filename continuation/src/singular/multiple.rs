@@ -21,7 +21,7 @@ const NO_QUADRATIC: f64 = 1e-5;
 
 /// Analyses a point with a kernel of several dimensions; `expected` is the direction in which the
 /// traced branch passes.
-pub(super) fn analyse<P: Problem>(
+pub(super) fn analyse<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     at: &mut Singular,
     expected: &Extended,
@@ -143,7 +143,7 @@ pub(super) fn analyse<P: Problem>(
 
 /// What tells directions apart that solve the cubic equations all alike: `vectors` across the traced
 /// tangent, with the linear forms `a` there.
-fn beyond_cubic<P: Problem>(
+fn beyond_cubic<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     at: &mut Singular,
     (traced, vectors, a): (&Extended, &[Extended], &Forms),
@@ -158,7 +158,7 @@ fn beyond_cubic<P: Problem>(
 
 /// Symmetric cubic coefficients of the reduced equations on `vectors`, and the parameter's part of
 /// the second-order corrections `h`.
-fn cubic_terms<P: Problem>(
+fn cubic_terms<P: Problem + ?Sized>(
     probe: &mut Probe<'_, P>,
     at: &mut Singular,
     vectors: &[Extended],

@@ -21,6 +21,8 @@ const IRREGULAR: f64 = 0.3;
 const CONVERGED: f64 = 1e-4;
 /// Relative difference of the first two values that is rounding.
 const ROUNDING: f64 = 1e-7;
+/// Relative error that values have that are the same to the last digits.
+const LAST_DIGITS: f64 = 16.0 * f64::EPSILON;
 /// Relative difference of values that stand still in rounding.
 const STANDS: f64 = 1e-2;
 
@@ -74,7 +76,8 @@ pub(super) fn settle(
         if smooth {
             // a difference this small is rounding, of which the longer step has less
             let value = if truncation <= ROUNDING * size { coarse } else { fine };
-            return Ok(Some(Settled { value, error: truncation, converged: true }));
+            let error = truncation.max(LAST_DIGITS * size);
+            return Ok(Some(Settled { value, error, converged: true }));
         }
     }
     let mut values = Vec::new();
@@ -100,7 +103,7 @@ pub(super) fn settle(
     if let Some(finest) = still.next_back() {
         // of the two neighbours the nearer one says what truncation or rounding leave
         let near = (finest[0] - finest[1]).abs().min((finest[2] - finest[1]).abs());
-        let error = near.max(1e-2 * spread(finest));
+        let error = near.max(1e-2 * spread(finest)).max(LAST_DIGITS * finest[1].abs());
         return Ok(Some(Settled { value: finest[1], error, converged: true }));
     }
     let error = spread(&values);

@@ -56,7 +56,7 @@ pub(super) struct Bending {
 }
 
 /// Evaluates a problem near a point; allocated when a special point is analysed.
-pub(crate) struct Probe<'a, P: Problem> {
+pub(crate) struct Probe<'a, P: Problem + ?Sized> {
     pub(crate) problem: &'a P,
     pub(crate) which: ParamId,
     pub(crate) weights: Weights,
@@ -74,7 +74,7 @@ pub(crate) struct Probe<'a, P: Problem> {
     metric: Vec<f64>,
 }
 
-impl<'a, P: Problem> Probe<'a, P> {
+impl<'a, P: Problem + ?Sized> Probe<'a, P> {
     pub(crate) fn new(problem: &'a P, which: ParamId, p: &[f64], weights: Weights) -> Self {
         let n = problem.dim();
         let vector = || vec![0.0; n];

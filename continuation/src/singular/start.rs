@@ -25,7 +25,7 @@ pub(crate) struct Begun {
 
 /// Whether the branch point near `x` is `x`, at the same parameter; then `x` becomes it, its tangent
 /// that of the branch that follows the parameter most, upwards if `increasing`.
-pub(crate) fn branch_point_at<P: Problem>(
+pub(crate) fn branch_point_at<P: Problem + ?Sized>(
     core: &mut Core<'_, P>,
     x: &mut State,
     increasing: bool,

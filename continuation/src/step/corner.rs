@@ -32,7 +32,7 @@ const ONE_WAY: f64 = 0.6;
 /// of 0.35 radians 1/1000.
 const BOW: f64 = 1.0 / 80.0;
 
-impl<P: Problem> Core<'_, P> {
+impl<P: Problem + ?Sized> Core<'_, P> {
     /// Whether the step of scaled length `h` from `a` to `b`, whose factors are the latest, cuts a
     /// corner; `secant` and `tangents` as in [`super::judge`].
     pub(crate) fn cuts_a_corner(

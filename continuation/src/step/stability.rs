@@ -17,7 +17,7 @@ const FEW: usize = 10;
 const MOST: usize = 24;
 
 /// Counts unstable modes of one problem.
-pub(crate) struct StabilityCount<P: Problem> {
+pub(crate) struct StabilityCount<P: Problem + ?Sized> {
     sense: Stability,
     multipliers: usize,
     /// Number of eigenvalues that are reported at every point.
@@ -29,7 +29,7 @@ pub(crate) struct StabilityCount<P: Problem> {
     pub(super) last: usize,
 }
 
-impl<P: Problem> StabilityCount<P> {
+impl<P: Problem + ?Sized> StabilityCount<P> {
     pub(crate) fn new(problem: &P, wanted: usize, counting: Counting) -> Self {
         StabilityCount {
             sense: problem.stability(),
@@ -170,7 +170,7 @@ impl<P: Problem> StabilityCount<P> {
 
 /// Assembles and factors the Hessian that is not the Jacobian; its numbers of negative and positive
 /// eigenvalues.
-pub(crate) fn hessian_inertia<P: Problem>(
+pub(crate) fn hessian_inertia<P: Problem + ?Sized>(
     problem: &P,
     u: &[f64],
     p: &[f64],

@@ -4,7 +4,8 @@ use super::Tracer;
 use super::input::{Progress, TraceError, increases};
 use crate::branch::{Branch, Detail, Event, Stop, StopReason};
 use crate::events::Watch;
-use crate::problem::Problem;
+use crate::linalg::Matrix;
+use crate::problem::{DynProblem, Problem};
 use crate::settings::Settings;
 use std::ops::ControlFlow;
 
@@ -46,7 +47,19 @@ pub fn both_ways<P: Problem>(
     watches: &[Watch],
     observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<Branch, TraceError> {
-    let mut first = Tracer::new(problem, parameter, u, p, settings.clone())?.watching(watches)?;
+    both(problem, parameter, (u, p), settings, watches, observer)
+}
+
+/// [`both_ways`] of a problem of unknown type.
+pub(crate) fn both<'a, J: Matrix>(
+    problem: &'a DynProblem<'a, J>,
+    parameter: &str,
+    (u, p): (&[f64], &[f64]),
+    settings: Settings,
+    watches: &[Watch],
+    observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<Branch, TraceError> {
+    let mut first = Tracer::of(problem, parameter, u, p, settings.clone())?.watching(watches)?;
     let increasing = increases(&settings, p[first.core.which.0]);
     let points = first.exhaust(observer);
     let (s, events, count) = (first.s, first.events.len(), points.len());
@@ -66,7 +79,7 @@ pub fn both_ways<P: Problem>(
     }
     // from the same state to the last bit, so that the tangent is the same but for its sign
     let settings = Settings { increasing: Some(!increasing), ..settings };
-    let mut second = Tracer::new(problem, parameter, u, p, settings)?.watching(watches)?;
+    let mut second = Tracer::of(problem, parameter, u, p, settings)?.watching(watches)?;
     if ahead.stopped.reason == StopReason::MaxPoints {
         second.finish = Some(end);
     }

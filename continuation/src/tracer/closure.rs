@@ -3,6 +3,7 @@
 use super::Tracer;
 use crate::branch::StopReason;
 use crate::events::basis;
+use crate::linalg::Matrix;
 use crate::problem::Problem;
 use crate::step::{Core, State};
 
@@ -10,7 +11,7 @@ use crate::step::{Core, State};
 /// error of the Hermite cubic by which the step is interpolated.
 const SAME: f64 = 0.02;
 
-impl<P: Problem> Tracer<'_, P> {
+impl<J: Matrix> Tracer<'_, J> {
     /// Whether the step of scaled length `h` closes the branch: over its start, in which
     /// direction, or over the end of its other half; and at which part of the step.
     pub(super) fn closes(&mut self, h: f64) -> Option<(StopReason, f64)> {
@@ -31,7 +32,7 @@ impl<P: Problem> Tracer<'_, P> {
 }
 
 /// Whether the step of scaled length `h` from `current` to `trial` passes over `at`, and where.
-fn passes<P: Problem>(
+fn passes<P: Problem + ?Sized>(
     core: &mut Core<'_, P>,
     current: &State,
     trial: &State,

@@ -115,7 +115,7 @@ pub(super) fn begins_at_target(settings: &Settings, start: f64) -> bool {
 
 /// The error of a start beside which the Jacobian is singular at every solution; `None` if it is not,
 /// or if nothing can be said.
-pub(super) fn singular_everywhere<P: Problem>(
+pub(super) fn singular_everywhere<P: Problem + ?Sized>(
     problem: &P,
     which: ParamId,
     u: &[f64],
@@ -138,7 +138,7 @@ pub(super) fn singular_everywhere<P: Problem>(
 }
 
 /// Why there is no first point: what is wrong with the problem near the start, or Newton's own error.
-pub(super) fn no_start<P: Problem>(
+pub(super) fn no_start<P: Problem + ?Sized>(
     problem: &P,
     which: ParamId,
     (u, p): (&[f64], &[f64]),
@@ -173,6 +173,6 @@ pub(super) fn check(what: &'static str, values: &[f64], expected: usize) -> Resu
 }
 
 /// The error that names an observable that is not there.
-pub(super) fn unknown_observable<P: Problem>(problem: &P, name: String) -> TraceError {
+pub(super) fn unknown_observable<P: Problem + ?Sized>(problem: &P, name: String) -> TraceError {
     TraceError::UnknownObservable { name, known: problem.observables().join(", ") }
 }

@@ -34,6 +34,7 @@ mod switching;
 mod unbounded;
 mod zoom;
 
+pub(crate) use both_ways::both;
 pub use both_ways::both_ways;
 pub use input::{Progress, TraceError};
 pub(crate) use resume::Baton;
@@ -41,8 +42,9 @@ pub(crate) use snapshot::Snapshot;
 
 use crate::branch::{Branch, Doubt, Event, Point, Statistics, Stop, StopReason};
 use crate::events::{Beside, Detector, Hidden, Plateau, Stretch, Watch};
+use crate::linalg::Matrix;
 use crate::newton::{NewtonSettings, newton};
-use crate::problem::{EvalError, ParamId, Problem, Stability};
+use crate::problem::{DynProblem, EvalError, ParamId, Problem, Stability};
 use crate::settings::{Settings, SettingsError};
 use crate::sound::{check_sizes, examine};
 use crate::step::{
@@ -68,8 +70,8 @@ const TOUCHES: &str = "an eigenvalue comes so close to the imaginary axis that i
 ///
 /// Work is done when the next point is asked for. After the last point [`Tracer::stopped`] says why
 /// the trace ended.
-pub struct Tracer<'a, P: Problem> {
-    core: Core<'a, P>,
+pub struct Tracer<'a, J: Matrix> {
+    core: Core<'a, DynProblem<'a, J>>,
     settings: Settings,
     detector: Detector,
     size: StepSize,
@@ -113,7 +115,7 @@ pub struct Tracer<'a, P: Problem> {
     stop: Option<Stop>,
 }
 
-fn detector<P: Problem>(
+fn detector<P: Problem + ?Sized>(
     problem: &P,
     watches: &[Watch],
     settings: &Settings,
@@ -129,7 +131,7 @@ fn detector<P: Problem>(
         .map_err(|name| unknown_observable(problem, name))
 }
 
-impl<'a, P: Problem> Tracer<'a, P> {
+impl<'a, J: Matrix> Tracer<'a, J> {
     /// Prepares a trace of the branch through the solution near `u` in the named parameter.
     ///
     /// `u` has length [`Problem::dim`], `p` holds the values of all parameters, of which all but the
@@ -138,8 +140,19 @@ impl<'a, P: Problem> Tracer<'a, P> {
     /// # Errors
     /// When the input is unusable, there is no solution near `u`, or the branch has no tangent there
     /// (at a fold or branch point).
-    pub fn new(
+    pub fn new<P: Problem<Jacobian = J>>(
         problem: &'a P,
+        parameter: &str,
+        u: &[f64],
+        p: &[f64],
+        settings: Settings,
+    ) -> Result<Self, TraceError> {
+        Self::of(problem, parameter, u, p, settings)
+    }
+
+    /// [`Tracer::new`] of a problem of unknown type.
+    pub(crate) fn of(
+        problem: &'a DynProblem<'a, J>,
         parameter: &str,
         u: &[f64],
         p: &[f64],
@@ -192,7 +205,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
 
     /// The tracer that stands at `start`.
     fn set_up(
-        mut core: Core<'a, P>,
+        mut core: Core<'a, DynProblem<'a, J>>,
         start: State,
         p: &[f64],
         settings: Settings,
@@ -581,7 +594,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
     }
 }
 
-impl<P: Problem> Iterator for Tracer<'_, P> {
+impl<J: Matrix> Iterator for Tracer<'_, J> {
     type Item = Point;
 
     fn next(&mut self) -> Option<Point> {

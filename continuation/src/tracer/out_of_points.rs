@@ -2,12 +2,12 @@
 
 use super::Tracer;
 use crate::branch::EventKind;
-use crate::problem::Problem;
+use crate::linalg::Matrix;
 
 /// Folds on the second half of the points from which on they are a cascade.
 const CASCADE: usize = 6;
 
-impl<P: Problem> Tracer<'_, P> {
+impl<J: Matrix> Tracer<'_, J> {
     /// The limit, and whether the branch turned back and forth on the way.
     pub(super) fn out_of_points(&self) -> String {
         let limit = self.settings.max_points;

@@ -1,9 +1,9 @@
 //! Where a step begins: ahead of the last states.
 
 use super::Tracer;
-use crate::problem::Problem;
+use crate::linalg::Matrix;
 
-impl<P: Problem> Tracer<'_, P> {
+impl<J: Matrix> Tracer<'_, J> {
     /// Quadratic extrapolation of the branch; along the tangent at first.
     pub(super) fn predict(&mut self, h: f64) {
         self.trial.p = self.predicted(h);

@@ -3,11 +3,12 @@
 use super::input::check;
 use super::{TraceError, Tracer};
 use crate::branch::{Branch, Event, EventKind};
+use crate::linalg::Matrix;
 use crate::problem::Problem;
 use crate::settings::Settings;
 use std::ops::ControlFlow;
 
-impl<'a, P: Problem> Tracer<'a, P> {
+impl<'a, J: Matrix> Tracer<'a, J> {
     /// Prepares a trace that goes on along a branch from its point number `index`, such as the last
     /// one, or that of an event; for another range, with other steps, or from a file. It goes the
     /// branch's way unless the settings say whether the parameter is to increase. At a special point
@@ -31,7 +32,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
     ///
     /// # Errors
     /// As [`Tracer::new`], and when the branch is not one of this problem or has no such point.
-    pub fn from_point(
+    pub fn from_point<P: Problem<Jacobian = J>>(
         problem: &'a P,
         branch: &Branch,
         index: usize,
@@ -53,7 +54,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
             p[which] = from.p;
             let increasing = settings.increasing.or(Some(from.increasing));
             let settings = Settings { increasing, ..settings.clone() };
-            Tracer::new(problem, &branch.parameter, &from.u, &p, settings)
+            Tracer::of(problem, &branch.parameter, &from.u, &p, settings)
         };
         let at = branch.points[index].event.and_then(|event| branch.events.get(event));
         let singular =

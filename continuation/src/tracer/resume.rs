@@ -1,7 +1,8 @@
 //! A trace that goes on with another discretisation of the same branch.
 
 use super::Tracer;
-use crate::problem::{ParamId, Problem};
+use crate::linalg::Matrix;
+use crate::problem::{DynProblem, ParamId};
 use crate::settings::Settings;
 use crate::step::{Constraint, Core, Precision, Refusal, State, StepSize, Weights};
 
@@ -16,7 +17,7 @@ pub(crate) struct Baton {
     range: f64,
 }
 
-impl<'a, P: Problem> Tracer<'a, P> {
+impl<'a, J: Matrix> Tracer<'a, J> {
     /// Where the trace stands, and by which lengths it measures.
     pub(crate) fn baton(&self, range: f64) -> Baton {
         Baton { at: self.current.clone(), weights: self.core.weights, size: self.size, range }
@@ -26,7 +27,7 @@ impl<'a, P: Problem> Tracer<'a, P> {
     /// its tangent, so that the parameter need not be what determines it. Refused where the correction is
     /// longer than `most`, in the scaled metric.
     pub(crate) fn resume(
-        problem: &'a P,
+        problem: &'a DynProblem<'a, J>,
         which: ParamId,
         p: &[f64],
         baton: &Baton,

@@ -3,7 +3,7 @@
 use super::Tracer;
 use super::switching::Departure;
 use crate::branch::{Doubt, Event, Point, Statistics, Stop};
-use crate::problem::Problem;
+use crate::linalg::Matrix;
 use crate::step::{State, StepSize, Weights};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
@@ -43,7 +43,7 @@ pub(crate) struct Snapshot {
     stop: Option<Stop>,
 }
 
-impl<P: Problem> Tracer<'_, P> {
+impl<J: Matrix> Tracer<'_, J> {
     /// The state of the trace.
     pub(crate) fn snapshot(&self) -> Snapshot {
         Snapshot {

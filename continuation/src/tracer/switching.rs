@@ -8,7 +8,8 @@
 use super::Tracer;
 use super::input::{TraceError, check, range};
 use crate::branch::{Branch, Direction, Event, StopReason};
-use crate::problem::{EvalError, ParamId, Problem};
+use crate::linalg::Matrix;
+use crate::problem::{DynProblem, EvalError, ParamId, Problem};
 use crate::settings::Settings;
 use crate::singular::Extended;
 use crate::step::{Constraint, Core, Precision, Refusal, State, Weights, dot, judge};
@@ -36,7 +37,7 @@ const FAR_TURN: f64 = 0.8;
 /// Longest and shortest first step, as parts of the one to a state that tells branches apart.
 const APART: [f64; 2] = [1.0, 0.5];
 
-impl<'a, P: Problem> Tracer<'a, P> {
+impl<'a, J: Matrix> Tracer<'a, J> {
     /// Prepares a trace of a branch that leaves `branch` at one of its branch points, along
     /// `direction`, one of [`crate::Crossing::leaving`], or against it. The first point is the
     /// branch point itself. The parameters other than the continued one have their values of
@@ -67,8 +68,20 @@ impl<'a, P: Problem> Tracer<'a, P> {
     ///
     /// # Errors
     /// When the settings are out of range, or the event is not a branch point of this problem.
-    pub fn leaving(
+    pub fn leaving<P: Problem<Jacobian = J>>(
         problem: &'a P,
+        branch: &Branch,
+        event: &Event,
+        direction: &Direction,
+        forward: bool,
+        settings: Settings,
+    ) -> Result<Self, TraceError> {
+        Self::off(problem, branch, event, direction, forward, settings)
+    }
+
+    /// [`Tracer::leaving`] of a problem of unknown type.
+    pub(crate) fn off(
+        problem: &'a DynProblem<'a, J>,
         branch: &Branch,
         event: &Event,
         direction: &Direction,

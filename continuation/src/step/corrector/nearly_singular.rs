@@ -12,7 +12,7 @@ const ROW: f64 = 1e-4;
 /// closer look.
 const NEARLY_SINGULAR: f64 = 1e8;
 
-impl<P: Problem> Core<'_, P> {
+impl<P: Problem + ?Sized> Core<'_, P> {
     /// Whether the matrix bordered by the tangent of the latest start is singular to rounding, or so
     /// nearly that it may be.
     ///

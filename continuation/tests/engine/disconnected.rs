@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod scaled;
+use crate::scaled;
 
 use continuation::deflation::{
     DeflationError, DeflationSettings, disconnected, disconnected_observed, lies_on,

@@ -5,7 +5,7 @@
 use continuation::{Branch, DenseProblem, Settings, StopReason, Tracer};
 use std::ops::ControlFlow;
 
-mod random;
+use crate::random;
 use random::Random;
 
 fn follow(f: impl Fn(f64, f64) -> f64 + 'static, (u, p): (f64, f64), settings: Settings) -> Branch {

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod scaled;
+use crate::scaled;
 
 use continuation::linalg::{Dense, Matrix};
 use continuation::samples::Bratu;

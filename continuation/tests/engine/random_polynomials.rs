@@ -6,14 +6,14 @@ use continuation::linalg::Dense;
 use continuation::{Branch, EventKind, Problem, Settings, StopReason, Tracer};
 use std::ops::ControlFlow;
 
-mod polynomial;
+use crate::polynomial;
 use polynomial::Polynomial;
 
-mod random;
+use crate::random;
 use random::Random;
 
 impl Random {
-    fn next(&mut self) -> f64 {
+    fn signed(&mut self) -> f64 {
         self.between(-1.0, 1.0)
     }
 
@@ -25,7 +25,7 @@ impl Random {
 /// `n` equations with all linear terms and `3 n` others, which hold at the state returned; with
 /// `trivial`, the first one has the factor `u_1`, which is zero there.
 fn random_system(random: &mut Random, n: usize, trivial: bool) -> (Polynomial, Vec<f64>) {
-    let mut u: Vec<f64> = (0..n).map(|_| random.next()).collect();
+    let mut u: Vec<f64> = (0..n).map(|_| random.signed()).collect();
     if trivial {
         u[0] = 0.0;
     }
@@ -36,14 +36,14 @@ fn random_system(random: &mut Random, n: usize, trivial: bool) -> (Polynomial, V
         for k in 0..=n {
             let mut powers = vec![0; n + 1];
             powers[k] = 1;
-            terms.push((random.next(), powers));
+            terms.push((random.signed(), powers));
         }
         for _ in 0..3 * n {
             let mut powers = vec![0; n + 1];
             for _ in 0..2 + random.below(2) {
                 powers[random.below(n + 1)] += 1;
             }
-            terms.push((random.next(), powers));
+            terms.push((random.signed(), powers));
         }
         // grows nowhere without bound, at least by itself
         let mut own = vec![0; n + 1];

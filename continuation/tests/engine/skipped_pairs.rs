@@ -5,9 +5,9 @@
 use continuation::{Branch, DenseProblem, EventKind, Problem, Settings, StopReason, Tracer};
 use std::ops::ControlFlow;
 
-mod polynomial;
+use crate::polynomial;
+use crate::random;
 use polynomial::Polynomial;
-mod random;
 use random::Random;
 
 fn follow<P: Problem>(problem: &P, u: &[f64], p: f64, settings: Settings) -> Branch {

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod scaled;
+use crate::scaled;
 
 use continuation::deflation::{Deflated, Deflation, DeflationError, DeflationSettings};
 use continuation::linalg::Dense;

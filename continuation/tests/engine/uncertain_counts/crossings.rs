@@ -8,9 +8,7 @@ use continuation::{
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
-#[path = "../random/mod.rs"]
-mod random;
-pub(crate) use random::Random;
+pub(crate) use crate::random::Random;
 
 /// Where entries of a Jacobian go.
 pub(crate) trait Entries: Matrix {

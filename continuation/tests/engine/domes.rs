@@ -9,7 +9,7 @@ use continuation::{
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-mod random;
+use crate::random;
 use random::Random;
 
 type Node = [f64; 3];

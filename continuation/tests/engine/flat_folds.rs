@@ -5,7 +5,7 @@
 use continuation::{Branch, DenseProblem, Detail, EventKind, Problem, Settings, Tracer};
 use std::ops::ControlFlow;
 
-mod random;
+use crate::random;
 use random::Random;
 
 fn trace<P: Problem>(problem: &P, u: &[f64], p: f64, max_step: f64) -> Branch {

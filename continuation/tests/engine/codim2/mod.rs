@@ -7,8 +7,7 @@ mod branch_points;
 mod hopf;
 mod invariance;
 #[allow(dead_code, reason = "the factors for one parameter")]
-#[path = "../scaled/mod.rs"]
-mod scaled;
+use crate::scaled;
 mod scales;
 
 use continuation::codim2::{Curve, CurveError, FoldCurve};
