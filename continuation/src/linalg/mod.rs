@@ -115,6 +115,11 @@ pub trait Matrix: Clone + Send {
     fn solve(&mut self, x: &mut [f64]);
     /// Solves `Aᵀ x = b` in place with the latest factors.
     fn solve_transpose(&mut self, x: &mut [f64]);
+    /// Whether a factorisation costs so much more than a solve that corrections go on with factors of a
+    /// state near by (false by default).
+    fn prefers_solves(&self) -> bool {
+        false
+    }
     /// The first entry since [`Matrix::set_zero`] that was to be written outside the pattern, where the
     /// type does not refuse it at once; it is not written, and an assembly with one is an error
     /// ([`crate::EvalError::OutsidePattern`]). `None` by default.

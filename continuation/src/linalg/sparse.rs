@@ -16,6 +16,9 @@ const SYMMETRIC: f64 = 0.9;
 /// Difference of mirrored entries, relative to the largest one, that is rounding of their assembly.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// Unknowns from which a factorisation in two dimensions costs many solves.
+const LARGE: usize = 2000;
+
 /// A sparse matrix with a fixed pattern, which always contains the diagonal.
 ///
 /// `P A Q = L U` by the left-looking algorithm of Gilbert and Peierls, written out here and not
@@ -294,6 +297,10 @@ impl Matrix for Sparse {
                 y[*i] += v * x[j];
             }
         }
+    }
+
+    fn prefers_solves(&self) -> bool {
+        self.dim() >= LARGE
     }
 
     fn mul_transpose(&self, x: &[f64], y: &mut [f64]) {

@@ -5,6 +5,7 @@
 //! to come, estimated from the measured quadratic convergence, so that a good step needs no
 //! assembly that only confirms.
 
+mod chords;
 mod nearly_singular;
 
 use super::stability::StabilityCount;
@@ -55,7 +56,7 @@ const STEEP: f64 = 1e2;
 const STANDS_STILL: f64 = 1e-6;
 
 /// The problem, its matrices and all work space of the tracer.
-pub(crate) struct Core<'a, P: Problem> {
+pub(crate) struct Core<'a, P: Problem + ?Sized> {
     pub(crate) problem: &'a P,
     pub(crate) which: ParamId,
     pub(crate) weights: Weights,
@@ -79,12 +80,12 @@ pub(crate) struct Core<'a, P: Problem> {
 
 /// The scale of the parameter at the start of a curve of special points, of which no range is
 /// expected: the value that it has there, or what is typical of it where that is nearly zero.
-pub(crate) fn curve_scale<P: Problem>(problem: &P, which: ParamId, start: f64) -> f64 {
+pub(crate) fn curve_scale<P: Problem + ?Sized>(problem: &P, which: ParamId, start: f64) -> f64 {
     let typical = problem.parameters()[which.0].scale.abs();
     if start.abs() > 1e-6 * typical { start.abs() } else { typical }
 }
 
-impl<'a, P: Problem> Core<'a, P> {
+impl<'a, P: Problem + ?Sized> Core<'a, P> {
     pub(crate) fn new(
         problem: &'a P,
         which: ParamId,
@@ -213,6 +214,10 @@ impl<'a, P: Problem> Core<'a, P> {
             };
             if done || stagnant {
                 self.finish(constraint, x)?;
+                return Ok(report);
+            }
+            if precision == Precision::Step && self.follow_up(constraint, x, size, &mut report) {
+                self.complete(x)?;
                 return Ok(report);
             }
         }
@@ -519,12 +524,17 @@ impl<'a, P: Problem> Core<'a, P> {
         constraint: Constraint<'_>,
         x: &State,
     ) -> Result<f64, Refusal> {
+        Ok(self.correction(constraint, x)?.0)
+    }
+
+    /// The correction that the latest factors make, in `du`: its scaled length, and its parameter's part.
+    fn correction(&mut self, constraint: Constraint<'_>, x: &State) -> Result<(f64, f64), Refusal> {
         self.residual(x).map_err(Refusal::Evaluation)?;
         self.du.copy_from_slice(&self.r);
         let mut g = [self.miss(constraint, x)];
         self.bordered.solve(&mut self.jacobian, &mut self.du, &mut g);
         self.problem.metric(&self.du, &mut self.mdu);
-        Ok(self.weights.norm(&self.mdu, &self.du, g[0]))
+        Ok((self.weights.norm(&self.mdu, &self.du, g[0]), g[0]))
     }
 
     /// What the constraint still misses at `x`.
