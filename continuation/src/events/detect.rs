@@ -430,7 +430,7 @@ impl Detector {
         // an eigenvalue that has left the few makes one less without passing zero
         let excess = change.saturating_sub(explained);
         if excess > 1 || (excess == 1 && kernel == 0 && !fold) {
-            if !final_say && self.futile < MOST_FUTILE {
+            if !final_say && !self.is_futile() {
                 return Err(Refusal::Stability);
             }
             self.doubt_count();
@@ -496,6 +496,11 @@ impl Detector {
             Candidate::Parameter { value, .. } => crosses(a - value, fold - value),
             _ => false,
         })
+    }
+
+    /// Whether uncertain counts were followed up in vain too often.
+    pub(crate) fn is_futile(&self) -> bool {
+        self.futile >= MOST_FUTILE
     }
 
     /// Notes that an uncertain count changes in the step and nothing explains it.

@@ -57,6 +57,12 @@ pub enum Refusal {
         /// Distance between the branches, in the problem's metric.
         gap: f64,
     },
+    /// More modes become critical close together than are told apart.
+    #[error("{modes} modes become critical too close together to be told apart")]
+    ManyModes {
+        /// How many.
+        modes: usize,
+    },
     /// The step ends on a special point, where the sides of it cannot be told apart.
     #[error("the step ends on a special point")]
     OnSpecialPoint,

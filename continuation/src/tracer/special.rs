@@ -21,6 +21,13 @@ const BRACKET: f64 = 1e-3;
 /// Part of the step to which a branch point is bracketed where Newton's method met another.
 const NEARER: f64 = 0.1;
 
+/// Most modes that are sought at one point: the work grows like the fourth power of their number.
+const MOST_MODES: usize = 12;
+
+/// What is left at its zero of an eigenvalue that is continuous, relative to the step's ends; bracketing
+/// leaves far less.
+const JUMP: f64 = 1e-3;
+
 /// Bisections by which a change of the count by several is divided into its parts.
 const DIVISIONS: usize = 6;
 
@@ -128,6 +135,20 @@ impl<J: Matrix> Tracer<'_, J> {
                 Some(end) => end,
                 None => self.locate_one(h, candidate)?,
             };
+            if self.jumps(&special) {
+                // one eigenvalue of the few gave way to another: shorter steps, or a doubt
+                let certified = self.current.certified && self.trial.certified;
+                match final_say {
+                    true if certified => {}
+                    false if certified || !self.detector.is_futile() => {
+                        return Err(Refusal::Stability);
+                    }
+                    _ => {
+                        self.detector.doubt_count();
+                        continue;
+                    }
+                }
+            }
             located.push(special);
         }
         // a fold at the end is the last value that the parameter takes: no crossing shows it
@@ -222,7 +243,12 @@ impl<J: Matrix> Tracer<'_, J> {
                 Divided::Unknown => {}
             }
         }
-        match locate_branch_points(core, a, b, h, kernel, seeds, final_say) {
+        let found = if kernel > MOST_MODES {
+            Err(Refusal::ManyModes { modes: kernel })
+        } else {
+            locate_branch_points(core, a, b, h, kernel, seeds, final_say)
+        };
+        match found {
             Ok(found) => located.extend(found.into_iter().map(special)),
             // or left the domain, as it does where thin films forbid a long way
             Err(refusal) if kernel == 1 && !final_say => {
@@ -242,12 +268,16 @@ impl<J: Matrix> Tracer<'_, J> {
             Err(_) if kernel > 1 && !(a.certified && b.certified) => {
                 self.detector.doubt_count();
             }
+            Err(refusal @ Refusal::ManyModes { .. }) if a.orientation == b.orientation => {
+                return Err(refusal);
+            }
             // steps cannot become shorter: as near as bisection comes
             Err(_) => {
                 let tolerance = settings.event_tolerance;
                 let place = locate(core, a, b, h, &candidate, tolerance, work)?;
                 passes_through(core, a, b, h, place)?;
                 let seeds = [place.at / h];
+                let kernel = kernel.min(MOST_MODES);
                 match locate_branch_points(core, a, b, h, kernel, &seeds, true) {
                     Ok(found) => {
                         located.extend(found.into_iter().map(special));
@@ -262,6 +292,20 @@ impl<J: Matrix> Tracer<'_, J> {
             }
         }
         Ok(())
+    }
+
+    /// Whether the eigenvalue whose sign changes is nowhere near zero where it does: another one is the
+    /// nearest to the axis from there on.
+    fn jumps(&self, special: &Special) -> bool {
+        let candidate = &special.candidate;
+        let nearest =
+            matches!(candidate, Candidate::Hopf | Candidate::RealEigenvalue | Candidate::Infinite);
+        if !nearest || special.detail != Detail::None {
+            return false;
+        }
+        let test = |x: &State| candidate.test(x, self.current.orientation).abs();
+        let size = test(&self.current).max(test(&self.trial));
+        test(&special.state) > JUMP * size
     }
 
     /// Locates a candidate other than a branch point.

@@ -27,6 +27,7 @@ mod flat_folds;
 mod infinite_eigenvalues;
 mod invariance;
 mod malformed;
+mod many_modes;
 mod multiple;
 mod near;
 mod polynomial;
