@@ -118,7 +118,7 @@ fn fold(side: usize) -> Result<f64, Box<dyn std::error::Error>> {
     let fold = branch.events_of(&EventKind::Fold).next().ok_or("no fold")?;
     println!(
         "{side} x {side}: fold at {:.9}, ± {:.0e} along the branch, {:?} to {:?} unstable modes; {} \
-         points, {} factorisations",
+         points, {} assemblies",
         fold.p,
         fold.error_estimate,
         fold.unstable_before,
