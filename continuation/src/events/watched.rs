@@ -33,9 +33,9 @@ pub(crate) fn locate_watched<P: Problem + ?Sized>(
     tolerance: f64,
     x: &mut State,
 ) -> Result<Option<Located>, Refusal> {
-    let (observable, small) = match *candidate {
-        Candidate::Value { observable, .. } => (observable, SMALL),
-        Candidate::Extremum { observable } => (observable, SMALL_SLOPE),
+    let (observable, small, precision) = match *candidate {
+        Candidate::Value { observable, .. } => (observable, SMALL, Precision::Place),
+        Candidate::Extremum { observable } => (observable, SMALL_SLOPE, Precision::Event),
         _ => return Err(Refusal::Unresolved),
     };
     let bend = bend(core, a, b);
@@ -53,7 +53,7 @@ pub(crate) fn locate_watched<P: Problem + ?Sized>(
     for _ in 0..2 * MAX_EVALUATIONS {
         let at = search.next(0.3 * shortest);
         interpolate(a, b, h, bend, at, x);
-        correction = core.correct(Constraint::Plane(a, at), x, Precision::Event)?.last;
+        correction = core.correct(Constraint::Plane(a, at), x, precision)?.last;
         let value = candidate.test(x, a.orientation);
         if !value.is_finite() {
             return Ok(None);
@@ -70,7 +70,7 @@ pub(crate) fn locate_watched<P: Problem + ?Sized>(
     let (best, value) = search.best();
     if evaluated != Some(best) {
         interpolate(a, b, h, bend, best, x);
-        correction = core.correct(Constraint::Plane(a, best), x, Precision::Event)?.last;
+        correction = core.correct(Constraint::Plane(a, best), x, precision)?.last;
     }
     let shrinks = value.abs() <= least || continuous(&brackets);
     let found = match candidate {

@@ -33,6 +33,9 @@ pub(crate) enum Precision {
     Step,
     /// The tangent too belongs to the converged solution.
     Event,
+    /// As [`Precision::Event`], for a place that does not depend on the tangent: where factorisations are
+    /// dear it may be corrected by a difference.
+    Place,
 }
 
 /// What a correction did.
@@ -210,13 +213,15 @@ impl<'a, P: Problem + ?Sized> Core<'a, P> {
             let done = match precision {
                 Precision::Step => expected <= converged && correction <= near,
                 // tangents of a nearly singular state magnify what a first correction left
-                Precision::Event => correction <= 3.0 * converged && iteration > 0,
+                Precision::Event | Precision::Place => {
+                    correction <= 3.0 * converged && iteration > 0
+                }
             };
             if done || stagnant {
                 self.finish(constraint, x)?;
                 return Ok(report);
             }
-            if precision == Precision::Step && self.follow_up(constraint, x, size, &mut report) {
+            if precision != Precision::Event && self.follow_up(constraint, x, size, &mut report) {
                 self.complete(x)?;
                 return Ok(report);
             }
