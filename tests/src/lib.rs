@@ -1,6 +1,6 @@
 //! Cross-crate tests live in `tests/`; this library is empty.
 
-/// The code of every README, as tests.
+/// The code of every README and of the documentation, as tests.
 #[cfg(doctest)]
 mod readme {
     #[doc = include_str!("../../README.md")]
@@ -15,6 +15,8 @@ mod readme {
     struct Identify;
     #[doc = include_str!("../../docs/fit.md")]
     struct Fit;
+    #[doc = include_str!("../../docs/library.md")]
+    struct Library;
     #[doc = include_str!("../../cli/README.md")]
     struct Cli;
 }
