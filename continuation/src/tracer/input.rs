@@ -1,7 +1,8 @@
 //! What a trace is told, and why it could not begin.
 
+use crate::events::{Beside, Detector, Watch};
 use crate::newton::NewtonError;
-use crate::problem::{ParamId, Parameter, Problem};
+use crate::problem::{ParamId, Parameter, Problem, Stability};
 use crate::settings::{Settings, SettingsError};
 use crate::singular::{Extended, Probe, deficient_everywhere};
 use crate::sound::ProblemError;
@@ -173,6 +174,23 @@ pub(super) fn check(what: &'static str, values: &[f64], expected: usize) -> Resu
 }
 
 /// The error that names an observable that is not there.
-pub(super) fn unknown_observable<P: Problem + ?Sized>(problem: &P, name: String) -> TraceError {
+fn unknown_observable<P: Problem + ?Sized>(problem: &P, name: String) -> TraceError {
     TraceError::UnknownObservable { name, known: problem.observables().join(", ") }
+}
+
+/// What finds the special points of a step.
+pub(super) fn detector<P: Problem + ?Sized>(
+    problem: &P,
+    watches: &[Watch],
+    settings: &Settings,
+) -> Result<Detector, TraceError> {
+    let (target, domain) = (settings.target, settings.domain);
+    let extended = problem.special_points().map(|curve| Beside {
+        pair: curve.crossing_pair().is_some(),
+        zero: curve.crossing_zero().is_some(),
+    });
+    let separate = problem.stability() == Stability::SeparateHessian;
+    Detector::new(watches, problem.observables(), target, domain, extended)
+        .map(|detector| detector.with_separate_stability(separate))
+        .map_err(|name| unknown_observable(problem, name))
 }

@@ -41,18 +41,16 @@ pub(crate) use resume::Baton;
 pub(crate) use snapshot::Snapshot;
 
 use crate::branch::{Branch, Doubt, Event, Point, Statistics, Stop, StopReason};
-use crate::events::{Beside, Detector, Hidden, Plateau, Stretch, Watch};
+use crate::events::{Detector, Hidden, Plateau, Stretch, Watch};
 use crate::linalg::Matrix;
 use crate::newton::{NewtonSettings, newton};
-use crate::problem::{DynProblem, EvalError, ParamId, Problem, Stability};
+use crate::problem::{DynProblem, EvalError, ParamId, Problem};
 use crate::settings::{Settings, SettingsError};
 use crate::sound::{check_sizes, examine};
 use crate::step::{
     Constraint, Core, Precision, Refusal, State, StepSize, Weights, curve_scale, judge,
 };
-use input::{
-    begins_at_target, check, increases, no_start, range, singular_everywhere, unknown_observable,
-};
+use input::{begins_at_target, check, detector, increases, no_start, range, singular_everywhere};
 use special::Special;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -113,22 +111,6 @@ pub struct Tracer<'a, J: Matrix> {
     events: Vec<Event>,
     doubts: Vec<Doubt>,
     stop: Option<Stop>,
-}
-
-fn detector<P: Problem + ?Sized>(
-    problem: &P,
-    watches: &[Watch],
-    settings: &Settings,
-) -> Result<Detector, TraceError> {
-    let (target, domain) = (settings.target, settings.domain);
-    let extended = problem.special_points().map(|curve| Beside {
-        pair: curve.crossing_pair().is_some(),
-        zero: curve.crossing_zero().is_some(),
-    });
-    let separate = problem.stability() == Stability::SeparateHessian;
-    Detector::new(watches, problem.observables(), target, domain, extended)
-        .map(|detector| detector.with_separate_stability(separate))
-        .map_err(|name| unknown_observable(problem, name))
 }
 
 impl<'a, J: Matrix> Tracer<'a, J> {
