@@ -223,6 +223,13 @@ impl<'a, P: Problem + ?Sized> Core<'a, P> {
             }
             if precision != Precision::Event && self.follow_up(constraint, x, size, &mut report) {
                 self.complete(x)?;
+                if let Constraint::Plane(base, _) = constraint
+                    && Self::is_near_change(base, x)
+                {
+                    self.assemble(&x.u, x.p).map_err(Refusal::Evaluation)?;
+                    self.facts = Some(self.bordered.factor(&mut self.jacobian));
+                    self.finish(constraint, x)?;
+                }
                 return Ok(report);
             }
         }

@@ -22,6 +22,7 @@ mod domains;
 mod domes;
 mod dynamics;
 mod estimates;
+mod factors_used_again;
 mod fine_scales;
 mod flat_folds;
 mod infinite_eigenvalues;
