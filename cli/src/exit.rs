@@ -1,7 +1,5 @@
 //! Exit codes, all of them.
 
-use std::process::ExitCode;
-
 /// How the program ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Exit {
@@ -13,10 +11,4 @@ pub(crate) enum Exit {
     BadInput = 2,
     /// The computation stopped early: files are complete for what was computed.
     StoppedEarly = 3,
-}
-
-impl From<Exit> for ExitCode {
-    fn from(exit: Exit) -> Self {
-        ExitCode::from(exit as u8)
-    }
 }

@@ -1,25 +1,31 @@
-//! The binary `arclen`: bifurcation diagrams from the command line.
-//!
-//! `arguments` says what may be asked, `commands` does it with the libraries `study`, `pictures` and
-//! `paper`; `advice` says what to do about their errors, `terminal` is the only place that prints.
+//! The binary `arclen`: bifurcation diagrams from the command line. The library does the work; here are
+//! the signals of the process.
 
-mod advice;
-mod arguments;
-mod commands;
-mod exit;
-mod terminal;
-
-use arguments::Arguments;
-use clap::Parser;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Signals that come closer than this are one request: a terminal that closes and a system that shuts
+/// down send several.
+const ONE_REQUEST: Duration = Duration::from_millis(500);
 
 fn main() -> ExitCode {
-    match Arguments::try_parse() {
-        Ok(arguments) => commands::dispatch(&arguments).into(),
-        Err(message) => {
-            // help and version come this way too; a closed pipe is no reason to complain
-            let _ = message.print();
-            if message.use_stderr() { exit::Exit::BadInput } else { exit::Exit::Done }.into()
+    cli::run(std::env::args_os(), &stop_on_signals).into()
+}
+
+/// A flag that Ctrl-C sets, and so do SIGTERM and SIGHUP.
+fn stop_on_signals() -> Result<Arc<AtomicBool>, String> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let heard = Arc::clone(&stop);
+    let mut first: Option<Instant> = None;
+    // the second request does not wait for the current step
+    let handler = move || {
+        heard.store(true, Ordering::SeqCst);
+        if first.get_or_insert_with(Instant::now).elapsed() > ONE_REQUEST {
+            std::process::exit(130);
         }
-    }
+    };
+    ctrlc::set_handler(handler).map_err(|error| error.to_string())?;
+    Ok(stop)
 }

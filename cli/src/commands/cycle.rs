@@ -2,6 +2,7 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
+use crate::Listen;
 use crate::advice::Advised;
 use crate::arguments::CycleArguments;
 use crate::exit::Exit;
@@ -19,7 +20,7 @@ const BRANCH: &str = "branch.csv";
 const CASE: &str = "case.toml";
 
 /// Travel a case to and fro.
-pub(super) fn cycle(arguments: &CycleArguments) -> Exit {
+pub(super) fn cycle(arguments: &CycleArguments, listen: &Listen<'_>) -> Exit {
     let case =
         match super::loaded(&arguments.case, &arguments.case.overrides(), arguments.output.quiet) {
             Ok(loaded) => loaded.case,
@@ -30,7 +31,7 @@ pub(super) fn cycle(arguments: &CycleArguments) -> Exit {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
-    let mut observer = Observer::new(Some(case.path), arguments.output.quiet);
+    let mut observer = Observer::new(Some(case.path), arguments.output.quiet, listen);
     let outcome = run_cycle(&case, arguments.report, &mut |progress| observer.update(progress));
     observer.finish();
     match outcome {

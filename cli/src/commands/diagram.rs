@@ -2,6 +2,7 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
+use crate::Listen;
 use crate::advice::Advised;
 use crate::arguments::DiagramArguments;
 use crate::exit::Exit;
@@ -20,7 +21,7 @@ const CASE: &str = "case.toml";
 const TABLES: &str = "branch-*.csv";
 
 /// Explore the diagram of a case.
-pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
+pub(super) fn diagram(arguments: &DiagramArguments, listen: &Listen<'_>) -> Exit {
     let overrides = arguments.overrides();
     let case = match super::loaded(&arguments.case, &overrides, arguments.output.quiet) {
         Ok(loaded) => loaded.case,
@@ -63,7 +64,7 @@ pub(super) fn diagram(arguments: &DiagramArguments) -> Exit {
         );
         terminal::err(&note);
     }
-    let observer = Observer::new(None, arguments.output.quiet);
+    let observer = Observer::new(None, arguments.output.quiet, listen);
     let mut nothing = KeepNothing;
     let mut lazy = checkpoint.as_mut().map(|checkpoint| Lazy { checkpoint, resumed, begun: false });
     let keep: &mut dyn Keep = match &mut lazy {

@@ -2,6 +2,7 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
+use crate::Listen;
 use crate::arguments::FigureArguments;
 use crate::exit::Exit;
 use crate::terminal;
@@ -11,7 +12,7 @@ use std::path::Path;
 const JSON: &str = "figures.json";
 
 /// Compute figures.
-pub(super) fn figure(arguments: &FigureArguments) -> Exit {
+pub(super) fn figure(arguments: &FigureArguments, listen: &Listen<'_>) -> Exit {
     let planned = paper::numbers(&arguments.numbers)
         .and_then(|numbers| paper::plan(&numbers, &arguments.overrides()));
     let plan = match planned {
@@ -23,7 +24,7 @@ pub(super) fn figure(arguments: &FigureArguments) -> Exit {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
-    let observer = Observer::new(None, arguments.output.quiet);
+    let observer = Observer::new(None, arguments.output.quiet, listen);
     let outcome = plan.compute(&observer.stop(), &mut |at| {
         observer.say(format!("{} of {} curves", at.done, at.all));
     });

@@ -2,6 +2,7 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
+use crate::Listen;
 use crate::advice::Advised;
 use crate::arguments::MapArguments;
 use crate::exit::Exit;
@@ -16,7 +17,7 @@ const MAP: &str = "map.json";
 const CASE: &str = "case.toml";
 
 /// Map a case.
-pub(super) fn map(arguments: &MapArguments) -> Exit {
+pub(super) fn map(arguments: &MapArguments, listen: &Listen<'_>) -> Exit {
     let case =
         match super::loaded(&arguments.case, &arguments.case.overrides(), arguments.output.quiet) {
             Ok(loaded) => loaded.case,
@@ -27,7 +28,7 @@ pub(super) fn map(arguments: &MapArguments) -> Exit {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
-    let mut observer = Observer::new(Some(case.path), arguments.output.quiet);
+    let mut observer = Observer::new(Some(case.path), arguments.output.quiet, listen);
     let outcome = run_map(&case, &arguments.over, &mut |progress| observer.update(progress));
     observer.finish();
     match outcome {

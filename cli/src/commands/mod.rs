@@ -13,6 +13,7 @@ mod progress;
 mod sweep;
 mod trace;
 
+use crate::Listen;
 use crate::advice::Advised;
 use crate::arguments::{Arguments, CaseArguments, Command};
 use crate::exit::Exit;
@@ -21,16 +22,16 @@ use std::path::PathBuf;
 use study::case::{LoadedCase, Override, catalogue, load};
 
 /// Do what was asked.
-pub(crate) fn dispatch(arguments: &Arguments) -> Exit {
+pub(crate) fn dispatch(arguments: &Arguments, listen: &Listen<'_>) -> Exit {
     match &arguments.command {
-        Command::Trace(arguments) => trace::trace(arguments),
-        Command::Diagram(arguments) => diagram::diagram(arguments),
+        Command::Trace(arguments) => trace::trace(arguments, listen),
+        Command::Diagram(arguments) => diagram::diagram(arguments, listen),
         Command::Fit(arguments) => fit::fit(arguments),
-        Command::Figure(arguments) => figure::figure(arguments),
-        Command::Cycle(arguments) => cycle::cycle(arguments),
+        Command::Figure(arguments) => figure::figure(arguments, listen),
+        Command::Cycle(arguments) => cycle::cycle(arguments, listen),
         Command::Check(arguments) => check::check(arguments),
-        Command::Map(arguments) => map::map(arguments),
-        Command::Sweep(arguments) => sweep::sweep(arguments),
+        Command::Map(arguments) => map::map(arguments, listen),
+        Command::Sweep(arguments) => sweep::sweep(arguments, listen),
         Command::Merge(arguments) => sweep::merge(arguments),
         Command::List => list::list(),
         Command::Completions { shell } => completions::completions(*shell),

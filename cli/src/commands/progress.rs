@@ -1,36 +1,22 @@
 //! Progress of a trace on a terminal, and requests to stop.
 
+use crate::Listen;
 use crate::terminal;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 use study::case::PathCase;
 use study::run::{DiagramProgress, Progress};
 
 const LENGTH: u64 = 1000;
 
-/// Signals that come closer than this are one request: a terminal that closes and a system that shuts
-/// down send several.
-const ONE_REQUEST: Duration = Duration::from_millis(500);
-
-/// A flag that Ctrl-C sets, and so do SIGTERM and SIGHUP.
-pub(super) fn stop_on_signals() -> Arc<AtomicBool> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let heard = Arc::clone(&stop);
-    let mut first: Option<Instant> = None;
-    // the second request does not wait for the current step
-    let handler = move || {
-        heard.store(true, Ordering::SeqCst);
-        if first.get_or_insert_with(Instant::now).elapsed() > ONE_REQUEST {
-            std::process::exit(130);
-        }
-    };
-    if let Err(error) = ctrlc::set_handler(handler) {
+/// A flag that is set when somebody asks for a stop.
+pub(super) fn requests(listen: &Listen<'_>) -> Arc<AtomicBool> {
+    listen().unwrap_or_else(|error| {
         terminal::err(&format!("note: Ctrl-C will not keep what was computed: {error}\n"));
-    }
-    stop
+        Arc::default()
+    })
 }
 
 /// Shows progress and asks for a stop after a signal.
@@ -43,8 +29,8 @@ pub(super) struct Observer {
 
 impl Observer {
     /// An observer; a quiet one, or one whom nobody watches, shows nothing.
-    pub(super) fn new(path: Option<PathCase>, quiet: bool) -> Self {
-        let stop = stop_on_signals();
+    pub(super) fn new(path: Option<PathCase>, quiet: bool, listen: &Listen<'_>) -> Self {
+        let stop = requests(listen);
         let bar = (!quiet && terminal::watched()).then(|| {
             let bar = ProgressBar::new(LENGTH);
             // how far a diagram is from its end nobody knows

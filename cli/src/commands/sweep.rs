@@ -1,7 +1,8 @@
 //! `arclen sweep` and `arclen merge`: parameter studies, and the union of their shards.
 
 use super::delivery::Made;
-use super::progress::stop_on_signals;
+use super::progress::requests;
+use crate::Listen;
 use crate::advice::Advised;
 use crate::arguments::{MergeArguments, OutputArguments, SweepArguments};
 use crate::exit::Exit;
@@ -25,7 +26,7 @@ const NAMES: [&str; 7] =
     [JSON, CURVES, EVENTS, PHASE, pictures::PHASE, "cases/plan.json", "cases/case-*.cbor"];
 
 /// Trace all cases of a sweep.
-pub(super) fn sweep(arguments: &SweepArguments) -> Exit {
+pub(super) fn sweep(arguments: &SweepArguments, listen: &Listen<'_>) -> Exit {
     let quiet = arguments.output.quiet;
     let sweep = match load(&arguments.sweep, arguments.shard, &catalogue()) {
         Ok(sweep) => sweep,
@@ -61,7 +62,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Exit {
         terminal::error(&error);
         return Exit::NotWritten;
     }
-    let run = match compute(arguments, &sweep, store.as_ref(), kept) {
+    let run = match compute(arguments, listen, &sweep, store.as_ref(), kept) {
         Ok(run) => run,
         Err(exit) => return exit,
     };
@@ -133,11 +134,12 @@ struct Run {
 /// Computes the cases that are not kept yet.
 fn compute(
     arguments: &SweepArguments,
+    listen: &Listen<'_>,
     sweep: &Sweep,
     store: Option<&Store>,
     kept: Vec<Kept>,
 ) -> Result<Run, Exit> {
-    let stop = stop_on_signals();
+    let stop = requests(listen);
     let have: Vec<usize> = kept.iter().map(|case| case.record.case).collect();
     let to_do: Vec<&SweepCase> =
         sweep.cases.iter().filter(|case| have.binary_search(&case.index).is_err()).collect();

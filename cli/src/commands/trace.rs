@@ -2,6 +2,7 @@
 
 use super::delivery::Made;
 use super::progress::Observer;
+use crate::Listen;
 use crate::advice::Advised;
 use crate::arguments::TraceArguments;
 use crate::exit::Exit;
@@ -19,7 +20,7 @@ const MODES: &str = "modes.csv";
 const CASE: &str = "case.toml";
 
 /// Trace a case.
-pub(super) fn trace(arguments: &TraceArguments) -> Exit {
+pub(super) fn trace(arguments: &TraceArguments, listen: &Listen<'_>) -> Exit {
     let case =
         match super::loaded(&arguments.case, &arguments.case.overrides(), arguments.output.quiet) {
             Ok(loaded) => loaded.case,
@@ -29,7 +30,7 @@ pub(super) fn trace(arguments: &TraceArguments) -> Exit {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
-    let mut observer = Observer::new(Some(case.path), arguments.output.quiet);
+    let mut observer = Observer::new(Some(case.path), arguments.output.quiet, listen);
     let run = if arguments.report { run_trace_reported } else { run_trace };
     let outcome = run(&case, &mut |progress| observer.update(progress));
     observer.finish();
