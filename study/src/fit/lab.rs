@@ -78,6 +78,22 @@ pub struct Wishes<'a> {
     pub robust: bool,
 }
 
+/// The tables of a file of known values, with their keys.
+pub fn keys() -> [(&'static str, Vec<String>); 4] {
+    let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+    let values = PHYSICAL.iter().map(|(key, _)| key.name().to_owned());
+    let errors = PHYSICAL.iter().map(|(key, _)| format!("{}_sd", key.name()));
+    let gas = ["gas_exponent", "gas_exponent_sd"].map(str::to_owned);
+    let physical = values.chain(errors).chain(gas).collect();
+    let [instrument, shell, of_physical, data] = TABLES;
+    [
+        (instrument, owned(INSTRUMENT)),
+        (shell, owned(SHELL)),
+        (of_physical, physical),
+        (data, owned(DATA)),
+    ]
+}
+
 /// Reads what is known.
 ///
 /// # Errors
@@ -97,16 +113,10 @@ pub fn load(path: Option<&Path>, overrides: &[Override]) -> Result<Lab, LoadErro
 }
 
 fn read(reader: &Reader, root: Section<'_>) -> Option<Lab> {
-    let sds: Vec<String> = PHYSICAL.iter().map(|(key, _)| format!("{}_sd", key.name())).collect();
-    let mut physical_keys: Vec<&str> = PHYSICAL.iter().map(|(key, _)| key.name()).collect();
-    physical_keys.extend(sds.iter().map(String::as_str));
-    physical_keys.extend(["gas_exponent", "gas_exponent_sd"]);
-    let homes: [(&'static str, &[&str]); 4] = [
-        ("instrument", INSTRUMENT),
-        ("shell", SHELL),
-        ("physical", &physical_keys),
-        ("data", DATA),
-    ];
+    let known = keys();
+    let listed: [Vec<&str>; 4] =
+        known.each_ref().map(|(_, keys)| keys.iter().map(String::as_str).collect());
+    let homes: [(&'static str, &[&str]); 4] = std::array::from_fn(|k| (TABLES[k], &*listed[k]));
     reader.only(root, &TABLES, &homes);
     let table = |name, allowed: &[&str]| {
         let section = reader.section(root, name);
@@ -143,9 +153,10 @@ fn read(reader: &Reader, root: Section<'_>) -> Option<Lab> {
     };
     plain(shell, Key::Poisson, POISSON_RATIOS);
     plain(shell, Key::MooneyB, FRACTION);
-    let physical = table("physical", &physical_keys);
+    let physical = table("physical", &listed[2]);
     plain(physical, Key::GasExponent, NOT_NEGATIVE);
-    for ((key, dimension), sd_name) in PHYSICAL.into_iter().zip(&sds) {
+    for (key, dimension) in PHYSICAL {
+        let sd_name = &format!("{}_sd", key.name());
         let allowed = if key == Key::SurfaceTension { NOT_NEGATIVE } else { POSITIVE };
         let value = reader.quantity(physical, key.name(), dimension, allowed);
         let sd = reader.quantity(physical, sd_name, dimension, POSITIVE);

@@ -4,7 +4,7 @@ use super::column::{Column, PLATES};
 use super::outline::State;
 use super::summary::count;
 use super::view::{Curve, Profile, Shape};
-use continuation::StopReason;
+use continuation::{Eigenvector, StopReason};
 use serde::{Deserialize, Serialize};
 
 /// One cell of a table.
@@ -269,6 +269,10 @@ pub struct EventRecord {
     pub form: FormRecord,
     /// The mode without the branch's symmetries that turns here.
     pub mode: Option<ModeRecord>,
+    /// The solver's unknowns here; files leave them out.
+    pub u: Vec<f64>,
+    /// Eigenvectors to the critical eigenvalues, of length 1: of the branch's own unknowns.
+    pub eigenvectors: Vec<Eigenvector>,
 }
 
 /// A mode without the symmetries of its branch.

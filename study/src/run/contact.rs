@@ -378,6 +378,8 @@ pub(super) fn event_record(traced: &ContactBranch, event: &Event, loaded: bool) 
         observables: Vec::new(),
         form: form(branch, event),
         mode: None,
+        u: branch.points[event.point].u.clone(),
+        eigenvectors: event.critical_modes(),
     }
 }
 

@@ -95,6 +95,8 @@ pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> Trac
             error_estimate: Some(event.error_estimate),
             observables: named.collect(),
             form: form(branch, event),
+            u: point.u.clone(),
+            eigenvectors: event.critical_modes(),
             ..EventRecord::default()
         });
         curve.marks.push(Mark {

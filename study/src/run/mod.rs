@@ -22,7 +22,7 @@ pub use ring_load::AXES as RING_AXES;
 pub use sweep::{Outcome, run_sweep};
 
 use crate::case::{PathCase, ResolvedCase};
-use crate::record::{CycleResult, DiagramResult, MapResult, TraceResult};
+use crate::record::{CycleResult, DiagramResult, MapResult, Outline, TraceResult};
 use continuation::{Settings, TraceError};
 use diagram::Work;
 use family::Wanted;
@@ -193,6 +193,20 @@ pub fn run_cycle(
     observer: &mut Observer<'_>,
 ) -> Result<CycleResult, RunError> {
     family::of(&case.problem).cycle(case, reported, observer)
+}
+
+/// The meridian of a shell in a state of a branch of the case, for example at a special point: its unknowns, and
+/// the value of the continued parameter. `None` for a problem without a shell, or a state that is not
+/// admissible.
+///
+/// # Errors
+/// When the model refuses the case.
+pub fn meridian(
+    case: &ResolvedCase,
+    u: &[f64],
+    parameter: f64,
+) -> Result<Option<Outline>, RunError> {
+    family::of(&case.problem).meridian(case, u, parameter)
 }
 
 /// Map a case over `key`. The observer hears of every point and may stop the work; what was

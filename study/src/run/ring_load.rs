@@ -189,6 +189,8 @@ pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> Trac
                 .collect(),
             form: form(branch, event),
             mode: None,
+            u: point.u.clone(),
+            eigenvectors: event.critical_modes(),
         }
     });
     TraceResult {

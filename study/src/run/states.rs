@@ -28,11 +28,31 @@ pub(super) fn between_plates(
     u: &[f64],
     plate: f64,
 ) -> Option<State> {
+    let outline = meridian_between_plates(problem, u, plate)?;
+    Some(State { point, plate, outline: outline.thinned(OUTLINE) })
+}
+
+/// The meridian of a shell between plates at a height.
+pub(super) fn meridian_between_plates(
+    problem: &ContactProblem,
+    u: &[f64],
+    plate: f64,
+) -> Option<Outline> {
     let parameters = problem.parameters_at(plate);
     let profile = problem.profile(u.get(..problem.dim())?, &parameters, FINE).ok()?;
     let (sigma, z) = (profile.sigma, profile.z);
-    let outline = Outline { sigma, z, pressure: profile.disjoining_pressure };
-    Some(State { point, plate, outline: outline.thinned(OUTLINE) })
+    Some(Outline { sigma, z, pressure: profile.disjoining_pressure })
+}
+
+/// The meridian of a ring-loaded shell at an angle in degrees.
+pub(super) fn meridian_in_ring(
+    problem: &RingLoadProblem,
+    u: &[f64],
+    degrees: f64,
+) -> Option<Outline> {
+    let parameters = problem.parameters_at(degrees.to_radians());
+    let profile = problem.profile(u, &parameters, FINE).ok()?;
+    Some(Outline { sigma: profile.sigma, z: profile.z, pressure: Vec::new() })
 }
 
 /// The states along a branch of the contact problem, for a report of `all` points.
@@ -53,10 +73,8 @@ pub(super) fn of_ring_load(problem: &RingLoadProblem, branch: &Branch, all: usiz
     let state = |at: usize| {
         let point = &points[at];
         let parameters = problem.parameters_at(point.p.to_radians());
-        let profile = problem.profile(&point.u, &parameters, FINE).ok()?;
+        let outline = meridian_in_ring(problem, &point.u, point.p)?;
         let plate = problem.observation(&point.u, &parameters).ok()?.ring_height;
-        let (sigma, z) = (profile.sigma, profile.z);
-        let outline = Outline { sigma, z, pressure: Vec::new() };
         Some(State { point: at, plate, outline: outline.thinned(OUTLINE) })
     };
     shown(points.len(), all, |at| points[at].event.is_some()).filter_map(state).collect()

@@ -2,16 +2,15 @@
 
 use super::{Family, Wanted};
 use crate::case::{ContactCase, ResolvedCase, StabilityCase};
-use crate::record::Symmetry;
-use crate::record::{CycleResult, DiagramResult, TraceResult};
+use crate::record::{CycleResult, DiagramResult, Outline, Symmetry, TraceResult};
 use crate::run::diagram::{
     DiagramObserver, DiagramProgress, NOT_EXAMINED, Presented, Work, result, with_asymmetric,
 };
 use crate::run::map::{Attempt, MapError, Second, Task, contact as map};
 use crate::run::stability::Stability;
 use crate::run::{Observer, RunError, asymmetric, contact, cycle, states};
-use continuation::Settings;
 use continuation::diagram::DiagramError;
+use continuation::{Problem, Settings};
 use problems::Setup;
 use shell_contact::{ContactBranch, force_watches};
 use std::time::Instant;
@@ -122,6 +121,18 @@ impl Family for ContactCase {
         observer: &mut Observer<'_>,
     ) -> Result<Attempt, MapError> {
         map::attempt(task, self, at, observer)
+    }
+
+    fn meridian(
+        &self,
+        case: &ResolvedCase,
+        u: &[f64],
+        parameter: f64,
+    ) -> Result<Option<Outline>, RunError> {
+        let problem = contact::shell(case, self)?;
+        // under a device the plate's distance is the last unknown
+        let plate = u.get(problem.dim()).copied().unwrap_or(parameter);
+        Ok(states::meridian_between_plates(&problem, u, plate))
     }
 
     fn film(&self) -> Option<f64> {

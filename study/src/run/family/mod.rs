@@ -11,7 +11,7 @@ use super::diagram::{DiagramObserver, Work};
 use super::map::{Attempt, MapError, Second, Task};
 use super::{Observer, RunError};
 use crate::case::{ProblemCase, ResolvedCase};
-use crate::record::{CycleResult, DiagramResult, TraceResult};
+use crate::record::{CycleResult, DiagramResult, Outline, TraceResult};
 
 /// What is wanted of a trace besides its points and special points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,6 +65,17 @@ pub(super) trait Family {
         at: f64,
         observer: &mut Observer<'_>,
     ) -> Result<Attempt, MapError>;
+
+    /// The meridian of a state of one of its branches at a value of the continued parameter: none without a
+    /// shell, or where the state is not admissible.
+    fn meridian(
+        &self,
+        _case: &ResolvedCase,
+        _u: &[f64],
+        _parameter: f64,
+    ) -> Result<Option<Outline>, RunError> {
+        Ok(None)
+    }
 
     /// `delta_A / R0`, for a shell whose curve is of a class of the phase diagram.
     fn film(&self) -> Option<f64> {

@@ -2,7 +2,7 @@
 
 use super::{Family, Wanted};
 use crate::case::{ResolvedCase, RingLoadCase};
-use crate::record::{DiagramResult, TraceResult};
+use crate::record::{DiagramResult, Outline, TraceResult};
 use crate::run::diagram::{DiagramObserver, DiagramProgress, Presented, Work, result};
 use crate::run::map::{Attempt, MapError, Second, Task, ring_load as map};
 use crate::run::stability::Stability;
@@ -77,5 +77,15 @@ impl Family for RingLoadCase {
         observer: &mut Observer<'_>,
     ) -> Result<Attempt, MapError> {
         map::attempt(task, self, at, observer)
+    }
+
+    fn meridian(
+        &self,
+        case: &ResolvedCase,
+        u: &[f64],
+        parameter: f64,
+    ) -> Result<Option<Outline>, RunError> {
+        let ring_load::Start { problem, .. } = ring_load::start(case, self)?;
+        Ok(states::meridian_in_ring(&problem, u, parameter))
     }
 }

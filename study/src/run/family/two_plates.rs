@@ -2,7 +2,7 @@
 
 use super::{Family, Wanted};
 use crate::case::{ResolvedCase, TwoPlatesCase};
-use crate::record::{CycleResult, DiagramResult, TraceResult};
+use crate::record::{CycleResult, DiagramResult, Outline, TraceResult};
 use crate::run::diagram::{
     DiagramObserver, DiagramProgress, Presented, Work, result, with_asymmetric,
 };
@@ -65,11 +65,40 @@ impl Family for TwoPlatesCase {
     fn attempt(&self, task: &Task<'_>, _: f64, _: &mut Observer<'_>) -> Result<Attempt, MapError> {
         Err(mirror_only(task.case))
     }
+
+    fn meridian(
+        &self,
+        case: &ResolvedCase,
+        u: &[f64],
+        parameter: f64,
+    ) -> Result<Option<Outline>, RunError> {
+        two_plates::visit(case, self, Meridian { u, parameter })
+    }
 }
 
 /// The refusal of a case from pole to pole.
 fn mirror_only(case: &ResolvedCase) -> MapError {
     RunError::MirrorOnly { case: case.name.clone(), run: "a map" }.into()
+}
+
+/// The meridian of a state, from pole to pole.
+struct Meridian<'m> {
+    u: &'m [f64],
+    parameter: f64,
+}
+
+impl WithPlates for Meridian<'_> {
+    type Output = Option<Outline>;
+
+    fn with<P: BetweenPlates>(self, problem: &P, _: &[f64], p: &[f64]) -> Option<Outline> {
+        let mut p = p.to_vec();
+        *p.first_mut()? = self.parameter;
+        if self.u.len() != problem.dim() {
+            return None;
+        }
+        let found = problem.meridian(self.u, &p).ok()?;
+        Some(Outline { sigma: found.sigma, z: found.z, pressure: found.disjoining_pressure })
+    }
 }
 
 /// The branches of a diagram between two plates, as plain numbers with their modes.
