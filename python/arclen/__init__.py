@@ -27,7 +27,11 @@ from ._arclen import EngineError as ArclenError
 from ._arclen import __version__
 from ._branch import Branch, Diagram, Event, Point, Solutions
 from ._case import Case, cases
-from ._problem import InterruptedWarning, Problem
+from ._command import main
+from ._definition import InterruptedWarning
+from ._figures import Figures, figure
+from ._fit import Estimate, Fit, Plan, fit, plan
+from ._problem import Problem
 from ._study import CaseBranch, Cycle, Map, cycle, diagram, map, trace
 from ._sweep import Study, study
 
@@ -38,9 +42,13 @@ __all__ = [
     "CaseBranch",
     "Cycle",
     "Diagram",
+    "Estimate",
     "Event",
+    "Figures",
+    "Fit",
     "InterruptedWarning",
     "Map",
+    "Plan",
     "Point",
     "Problem",
     "Solutions",
@@ -49,7 +57,11 @@ __all__ = [
     "cases",
     "cycle",
     "diagram",
+    "figure",
+    "fit",
+    "main",
     "map",
+    "plan",
     "study",
     "trace",
 ]

@@ -307,6 +307,15 @@ class Branch:
         """The unknowns at all points, an array of shape (points, n)."""
         return self._raw.states()[:, : self.dim]
 
+    def shape(self, event: Event) -> Any:
+        """The critical mode at a special point, an array of shape (n,); None where there is none.
+
+        Where several modes are critical, `Event.modes` has them all.
+        """
+        if not isinstance(event, Event) or event.branch is not self:
+            raise TypeError(f"shape: {event!r} is no event of this branch")
+        return event.modes[0] if event.modes else None
+
     def _parameters_at(self, index: int) -> dict[str, float]:
         values = self.parameters
         values[self.parameter] = float(self[self.parameter][index])

@@ -2,44 +2,30 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _arclen
+from ._convert import write
 
-#: The table of a case file in which a bare key stands.
-_TABLES = {
-    "law": "shell",
-    "poisson": "shell",
-    "b": "shell",
-    "bending": "dimensionless",
-    "pressure": "dimensionless",
-    "adhesion": "dimensionless",
-    "film": "dimensionless",
-    "surface_tension": "dimensionless",
-    "gas_exponent": "dimensionless",
-    "radius": "physical",
-    "young": "physical",
-    "thickness": "physical",
-    "chi": "physical",
-    "elements": "mesh",
-    "grading": "mesh",
-    "start": "path",
-    "end": "path",
-    "max_step": "path",
-    "min_step": "path",
-    "max_points": "path",
-    "eigenvalues": "path",
-    "depth": "diagram",
-    "max_branches": "diagram",
-    "scan": "stability",
-    "max_n": "stability",
-    "stiffness": "device",
-}
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from ._branch import Diagram
+    from ._fit import Plan
+    from ._study import CaseBranch, Cycle, Map
+    from ._sweep import Study
+
+
+@functools.cache
+def _tables() -> list[tuple[str, str, list[str]]]:
+    """The tables of case files, the problems that have them, their keys."""
+    return _arclen.case_keys()
 
 
 def cases() -> dict[str, str]:
@@ -106,12 +92,16 @@ class Case:
             self._source = path
         else:
             raise TypeError(f"{what!r} is neither a name, a path nor a dictionary")
-        self._raw = self._load(given)
-        # where a bare key stands depends on the case
-        given += [f"{key}={_value(value)}" for key, value in _flat(keys, self.to_toml())]
-        self._keys: list[str] = given
         if keys:
-            self._raw = self._load(given)
+            if any(_is_bare(key, value) for key, value in keys.items()):
+                # where a bare key stands depends on the case
+                raw = self._load(given)
+                flat = _flat(keys, _homes(raw.problem, raw.is_physical, raw.parameters))
+            else:
+                flat = _flat(keys, {})
+            given += [f"{key}={_value(value)}" for key, value in flat]
+        self._keys: list[str] = given
+        self._raw = self._load(given)
 
     def _load(self, keys: list[str]) -> _arclen.RawCase:
         if isinstance(self._source, tuple):
@@ -130,6 +120,85 @@ class Case:
     def to_toml(self) -> str:
         """The case as a case file, with every default written out."""
         return self._raw.to_toml()
+
+    def trace(self, **options: Any) -> CaseBranch:
+        """The branch; see `arclen.trace`."""
+        from ._study import trace
+
+        return trace(self, **options)
+
+    def diagram(self, **options: Any) -> Diagram:
+        """The bifurcation diagram; see `arclen.diagram`."""
+        from ._study import diagram
+
+        return diagram(self, **options)
+
+    def cycle(self, **options: Any) -> Cycle:
+        """Loading and unloading; see `arclen.cycle`."""
+        from ._study import cycle
+
+        return cycle(self, **options)
+
+    def map(self, over: str, **options: Any) -> Map:
+        """Special points in two parameters; see `arclen.map`."""
+        from ._study import map
+
+        return map(self, over, **options)
+
+    def plan(self, known: Any = None, **options: Any) -> Plan:
+        """What a measurement of this shell would identify; see `arclen.plan`."""
+        from ._fit import plan
+
+        return plan(self, known, **options)
+
+    def sweep(
+        self,
+        vary: Mapping[str, Any],
+        executor: Executor | None = None,
+        out: str | os.PathLike[str] | None = None,
+        **options: Any,
+    ) -> Study:
+        """The case with all combinations of values of some keys; see `arclen.study`.
+
+        Parameters
+        ----------
+        vary : dict
+            For each key its values: a list, or a dictionary as in a sweep file, such as
+            ``{"from": 1e-4, "to": 1e-2, "count": 5, "scale": "log"}``.
+        executor, **options
+            Those of `arclen.study`.
+        out : str or path, optional
+            The folder, by default ``arclen-out/NAME``; its ``sweep.toml`` is the sweep, for the program too.
+
+        Returns
+        -------
+        Study
+
+        Examples
+        --------
+        >>> import arclen, tempfile
+        >>> with tempfile.TemporaryDirectory() as out:
+        ...     study = arclen.Case("bratu").sweep({"elements": [20, 40]}, out=out)
+        >>> len(study), study.keys
+        (2, ['mesh.elements'])
+        """
+        from ._sweep import study
+
+        if not isinstance(vary, Mapping) or not vary:
+            raise TypeError(f"vary: {vary!r} is not a dictionary of keys and their values")
+        raw = self._raw
+        homes = _homes(raw.problem, raw.is_physical, raw.parameters)
+        text = self.to_toml()
+        for key, values in vary.items():
+            ((key, _),) = _flat({key: None}, homes)
+            if not isinstance(values, Mapping):
+                values = {"values": list(values)}
+            text += f"\n[[vary]]\n{_toml({'key': key, **values})}"
+        folder = os.fspath(out) if out is not None else os.path.join("arclen-out", self.name)
+        os.makedirs(folder, exist_ok=True)
+        path = os.path.join(folder, "sweep.toml")
+        write(path, text.encode())
+        return study(path, executor, folder, **options)
 
     def __repr__(self) -> str:
         return f"<Case {self.name}>"
@@ -151,24 +220,31 @@ def resolved(name: str, toml: str) -> Case:
     return case
 
 
-def _flat(keys: Mapping[str, Any], toml: str) -> Iterator[tuple[str, Any]]:
+def _is_bare(key: str, value: Any) -> bool:
+    return not isinstance(value, Mapping) and "." not in key and "__" not in key
+
+
+def _homes(problem: str, is_physical: bool, parameters: Iterable[str]) -> dict[str, str]:
+    """The table in which a bare key of a case stands, of those that stand in one alone."""
+    other = "dimensionless" if is_physical else "physical"
+    homes: dict[str, str | None] = {}
+    for table, problems, names in _tables():
+        if (problem in problems.split(", ") or problems.startswith("all")) and table != other:
+            homes.update((name, None if name in homes else table) for name in names)
+    homes.update((name, "parameters") for name in parameters)
+    return {name: table for name, table in homes.items() if table is not None}
+
+
+def _flat(keys: Mapping[str, Any], homes: Mapping[str, str]) -> Iterator[tuple[str, Any]]:
     """Keys with their tables."""
     for key, value in keys.items():
         if isinstance(value, Mapping):
             for inner, one in _flat_table(value):
                 yield f"{key}.{inner}", one
-        elif "." in key or "__" in key:
+        elif not _is_bare(key, value):
             yield key.replace("__", "."), value
-        elif f"\n{key} = " in toml.partition("\n[parameters]")[2].partition("\n[")[0]:
-            # a parameter of a problem of the catalogue
-            yield f"parameters.{key}", value
-        elif key in _TABLES:
-            table = _TABLES[key]
-            if table == "dimensionless" and "\n[physical]" in toml and key != "gas_exponent":
-                table = "physical"
-            yield f"{table}.{key}", value
         else:
-            yield key, value
+            yield f"{homes[key]}.{key}" if key in homes else key, value
 
 
 def _flat_table(table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import numbers
+import os
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
@@ -47,6 +48,11 @@ def number(value: Any, what: str) -> float:
     if np.isnan(result):
         raise ValueError(f"{what} is NaN")
     return result
+
+
+def or_nan(value: Any) -> float:
+    """A number of a record, NaN where there is none."""
+    return float("nan") if value is None else float(value)
 
 
 def index(value: Any, what: str) -> int:
@@ -396,3 +402,12 @@ def progress(progress: Any) -> Callable[..., Any] | None:
         return False
 
     return update
+
+
+def write(path: str | os.PathLike[str], content: bytes) -> None:
+    """Replaces a file at once, so that nobody reads half of it."""
+    folder, name = os.path.split(os.fspath(path))
+    part = os.path.join(folder, f".{name}.part")
+    with open(part, "wb") as file:
+        file.write(content)
+    os.replace(part, path)

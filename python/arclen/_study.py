@@ -14,7 +14,7 @@ import numpy as np
 from . import _convert as convert
 from ._branch import Branch, Diagram, Event, Events, Point
 from ._case import Case, resolved
-from ._problem import InterruptedWarning
+from ._definition import InterruptedWarning
 
 if TYPE_CHECKING:
     import pandas
@@ -42,7 +42,8 @@ class CaseBranch(_Table, Branch):
     """A branch of a case: a `Branch` with the columns of the program's ``branch.csv``.
 
     Numbers are those of the file to the last bit; a cell that is empty there is NaN. Columns of words are
-    arrays of strings. States are not kept: ``u`` of its events is None.
+    arrays of strings. States are kept at special points alone: ``event.u`` is there, ``u`` of other points is
+    None.
 
     Attributes
     ----------
@@ -130,7 +131,7 @@ class CaseBranch(_Table, Branch):
         raise ValueError("the states of a case are not kept")
 
     def shape(self, event: Event) -> dict[str, Any] | None:
-        """The mode at a loss of symmetry.
+        """The mode of a shell at a loss of symmetry; those of the branch's own unknowns are `Event.modes`.
 
         Returns
         -------
@@ -143,6 +144,25 @@ class CaseBranch(_Table, Branch):
         modes = self._record.get("modes", {})
         found = modes.get(event.number)
         return None if found is None else dict(found)
+
+    def meridian(self, event: Event) -> dict[str, np.ndarray] | None:
+        """The shell at a special point.
+
+        Returns
+        -------
+        dict or None
+            Arrays of shape (samples,) from the pole on: ``sigma`` (distance from the axis) and ``z`` (height
+            above the equator), in R0, and where there is a film its ``pressure``; None of a problem without a
+            shell, and of a branch from files.
+        """
+        if not isinstance(event, CaseEvent) or event.branch is not self:
+            raise TypeError(f"meridian: {event!r} is no event of this branch")
+        if event.u is None or self.case is None:
+            return None
+        found = self.case._raw.meridian(event.u.tolist(), event.p)
+        if found is None:
+            return None
+        return {name: one for name, one in zip(("sigma", "z", "pressure"), found) if one.size}
 
     def to_pandas(self) -> pandas.DataFrame:
         """The columns as a table; ``attrs`` hold units and labels. Needs pandas."""
@@ -181,9 +201,7 @@ class CaseBranch(_Table, Branch):
         if self.case is not None:
             files["case.toml"] = self.case.to_toml()
         for name, text in files.items():
-            part = folder / f".{name}.part"
-            part.write_bytes(text.encode())
-            os.replace(part, folder / name)
+            convert.write(folder / name, text.encode())
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> CaseBranch:
@@ -235,7 +253,7 @@ class CasePoint(Point):
 
     @property
     def u(self) -> Any:
-        """None: states of cases are not kept."""
+        """None: states of cases are kept at special points alone."""
         return None
 
     def __getitem__(self, name: str) -> Any:
@@ -262,6 +280,11 @@ class CaseEvent(CasePoint, Event):
 
     `kind`, `label`, `p`, `unstable_before`, `unstable_after`, `residual`, `error_estimate`, `type` and
     `criticality` are those of `Event`; `record` has everything that ``events.json`` says of it.
+
+    `u` is the state, the solver's unknowns (of a shell those of `arclen-shell`'s discretisation), an array of
+    shape (n,), and `modes` are the critical eigenvectors among the branch's own unknowns, null vectors at folds
+    and branch points, complex at Hopf points. Both are lost in the files of `save`: then `u` is None and
+    `modes` is empty.
     """
 
     def __init__(self, branch: CaseBranch, number: int, index: int, record: dict[str, Any]) -> None:
@@ -276,14 +299,21 @@ class CaseEvent(CasePoint, Event):
         self.p = float("nan") if value is None else float(value)
         self.unstable_before = record.get("unstable_before")
         self.unstable_after = record.get("unstable_after")
-        self.residual = _number(record.get("residual"))
-        self.error_estimate = _number(record.get("error_estimate"))
+        self.residual = convert.or_nan(record.get("residual"))
+        self.error_estimate = convert.or_nan(record.get("error_estimate"))
         self.type = record.get("type")
         self.criticality = record.get("criticality")
         form = ("curvature", "order", "frequency", "lyapunov", "lyapunov_error", "multiplicity")
         self.normal_form = {key: record[key] for key in form if key in record}
-        self.modes = []
+        states = branch._record.get("states")
+        self._u, vectors = states[number] if states else (None, [])
+        self.modes = [re if im is None else re + 1j * im for re, im in vectors]
         self.directions = []
+
+    @property
+    def u(self) -> Any:
+        """The state at the special point, an array of shape (n,); None of a branch from files."""
+        return self._u
 
 
 class Cycle(_Table):
@@ -422,7 +452,7 @@ def trace(case: Any, *, progress: Any = None, **keys: Any) -> CaseBranch:
     """
     loaded = Case(case, **keys)
     record, error = loaded._raw.trace(convert.progress(progress))
-    return _settled(CaseBranch(loaded, record), error)
+    return settled(CaseBranch(loaded, record), error)
 
 
 def diagram(case: Any, *, progress: Any = None, **keys: Any) -> Diagram:
@@ -443,14 +473,14 @@ def diagram(case: Any, *, progress: Any = None, **keys: Any) -> Diagram:
     ]
     stopped = record["stopped_because"]
     complete = stopped == "complete" and all(branch.is_complete for branch in branches)
-    return _settled(Diagram(branches, found["joints"], stopped, complete), error)
+    return settled(Diagram(branches, found["joints"], stopped, complete), error)
 
 
 def cycle(case: Any, *, progress: Any = None, **keys: Any) -> Cycle:
     """Loading and unloading with jumps, as ``arclen cycle`` computes it; parameters as for `trace`."""
     loaded = Case(case, **keys)
     record, error = loaded._raw.cycle(convert.progress(progress))
-    return _settled(Cycle(loaded, record), error)
+    return settled(Cycle(loaded, record), error)
 
 
 def map(case: Any, over: str, *, progress: Any = None, **keys: Any) -> Map:
@@ -471,10 +501,10 @@ def map(case: Any, over: str, *, progress: Any = None, **keys: Any) -> Map:
         raise TypeError(f"over: {over!r} is not a key")
     loaded = Case(case, **keys)
     record, error = loaded._raw.map(over, convert.progress(progress))
-    return _settled(Map(loaded, record), error)
+    return settled(Map(loaded, record), error)
 
 
-def _settled(found: Any, error: BaseException | None) -> Any:
+def settled(found: Any, error: BaseException | None) -> Any:
     """The result, or the exception of a callback; Ctrl-C leaves what there is."""
     if error is None:
         return found
@@ -484,10 +514,6 @@ def _settled(found: Any, error: BaseException | None) -> Any:
         )
         return found
     raise error
-
-
-def _number(value: Any) -> float:
-    return float("nan") if value is None else float(value)
 
 
 def _columns(text: str) -> list[tuple[str, str, str, Any]]:

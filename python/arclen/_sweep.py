@@ -6,6 +6,7 @@ import concurrent.futures
 import functools
 import io
 import os
+import uuid
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -76,13 +77,19 @@ def _arrays(text: str) -> dict[str, np.ndarray]:
 
 
 @functools.lru_cache(maxsize=4)
-def _sweep(path: str, changed: float) -> _arclen.RawSweep:
-    return _arclen.RawSweep(path)
+def _sweep(path: str, changed: float, shard: str | None) -> _arclen.RawSweep:
+    return _arclen.RawSweep(path, shard)
 
 
-def _run(path: str, changed: float, case: int, out: str) -> int:
-    """Runs and keeps a case; in a worker."""
-    _sweep(path, changed).run(case, out)
+def _run(
+    path: str, changed: float, case: int, out: str, shard: str | None = None, attempt: str = ""
+) -> int:
+    """Runs and keeps a case; in a worker.
+
+    `attempt` makes each call another one: an executor such as Dask's takes equal calls for one, and would answer the
+    second with the failure of the first.
+    """
+    _sweep(path, changed, shard).run(case, out)
     return case
 
 
@@ -91,6 +98,7 @@ def study(
     executor: concurrent.futures.Executor | None = None,
     out: str | os.PathLike[str] | None = None,
     *,
+    shard: str | None = None,
     progress: Callable[[int, int], Any] | None = None,
 ) -> Study:
     """Computes a sweep on an executor, and keeps each case as it arrives.
@@ -107,7 +115,10 @@ def study(
         the sweep file and the folder. By default a thread for each processor, which is enough on one
         machine: cases are computed without the interpreter's lock.
     out : str or path, optional
-        The folder; by default ``arclen-out/NAME``.
+        The folder; by default ``arclen-out/NAME``, of a shard ``arclen-out/NAME-k-of-n``.
+    shard : str, optional
+        ``"k/n"`` computes the k-th of n shares of the cases alone, into a folder of its own;
+        ``arclen.main(["merge", *folders])`` unites them.
     progress : callable, optional
         Called after each case with the numbers of cases that are done and of all.
 
@@ -124,8 +135,9 @@ def study(
     is_file = os.path.exists(path)
     path = os.path.abspath(path) if is_file else path
     changed = os.path.getmtime(path) if is_file else 0.0
-    raw = _arclen.RawSweep(path)
-    folder = os.path.abspath(os.fspath(out) if out is not None else f"arclen-out/{raw.name}")
+    raw = _arclen.RawSweep(path, shard)
+    place = f"arclen-out/{raw.name}{raw.suffix}" if out is None else os.fspath(out)
+    folder = os.path.abspath(place)
     waiting = raw.begin(folder)
     lost: dict[int, BaseException] = {}
     done = len(raw) - len(waiting)
@@ -142,10 +154,11 @@ def study(
             lost[case] = error
 
     def submit(pool: concurrent.futures.Executor, cases: list[int]) -> None:
+        attempt = uuid.uuid4().hex
         futures: dict[concurrent.futures.Future[int], int] = {}
         for case in cases:
             try:
-                futures[pool.submit(_run, path, changed, case, folder)] = case
+                futures[pool.submit(_run, path, changed, case, folder, shard, attempt)] = case
             except concurrent.futures.BrokenExecutor as error:
                 lost[case] = error
         for future in concurrent.futures.as_completed(futures):

@@ -1,11 +1,16 @@
-//! The extension module `arclen._arclen`: the engine for problems that are Python functions.
+//! The extension module `arclen._arclen`: the engine for problems that are Python functions, the studies of
+//! cases, and the program.
 //!
 //! The Python side (`arclen/`) checks and converts what users write, and dresses what comes back; this side
 //! computes. Nothing here panics on purpose; a panic would arrive as an exception of Python.
 
+mod attended;
 mod branch;
 mod callbacks;
+mod command;
 mod engine;
+mod figures;
+mod fits;
 mod names;
 mod problem;
 mod storage;
@@ -133,5 +138,12 @@ fn _arclen(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(studies::list_cases, module)?)?;
     module.add_class::<studies::RawCase>()?;
     module.add_class::<sweeps::RawSweep>()?;
+    module.add_function(wrap_pyfunction!(studies::case_keys, module)?)?;
+    module.add_function(wrap_pyfunction!(command::run_command, module)?)?;
+    module.add_function(wrap_pyfunction!(fits::lab_keys, module)?)?;
+    module.add_function(wrap_pyfunction!(fits::curve_sources, module)?)?;
+    module.add_function(wrap_pyfunction!(fits::fit_curve, module)?)?;
+    module.add_function(wrap_pyfunction!(fits::plan_measurement, module)?)?;
+    module.add_function(wrap_pyfunction!(figures::compute_figures, module)?)?;
     Ok(())
 }

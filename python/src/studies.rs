@@ -7,17 +7,18 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::ops::ControlFlow;
 use std::path::Path;
-use study::case::{self, Override, ResolvedCase};
+use study::case::keys::{Key, TABLES};
+use study::case::{self, Override, ProblemCase, ResolvedCase};
 use study::record::{
-    Cell, DiagramResult, MapResult, Table, TraceResult, branch_csv, cycle_json, cycle_table,
-    diagram_json, events_json, map_json,
+    Cell, DiagramResult, MapResult, Outline, Table, TraceResult, branch_csv, cycle_json,
+    cycle_table, diagram_json, events_json, map_json,
 };
 use study::run::{self, KeepNothing, Saved};
 
 /// A checked case; immutable.
 #[pyclass(frozen, module = "arclen._arclen")]
 pub(crate) struct RawCase {
-    case: ResolvedCase,
+    pub(crate) case: ResolvedCase,
     notes: Vec<String>,
 }
 
@@ -26,7 +27,7 @@ fn loaded(found: Result<case::LoadedCase, case::LoadError>) -> PyResult<RawCase>
     Ok(RawCase { case: found.case, notes: found.notes })
 }
 
-fn given(keys: Vec<String>) -> Vec<Override> {
+pub(crate) fn given(keys: Vec<String>) -> Vec<Override> {
     keys.into_iter().map(|text| Override::given_by("keyword", text)).collect()
 }
 
@@ -41,6 +42,13 @@ pub(crate) fn find_case(what: &str, keys: Vec<String>) -> PyResult<RawCase> {
 pub(crate) fn parse_case(name: &str, text: &str, keys: Vec<String>) -> PyResult<RawCase> {
     let plain = case::plain_name(name);
     loaded(case::load_text(name, &plain, text, &given(keys), &case::catalogue()))
+}
+
+/// The tables of case files, in the order of their list: table, problems, names of the keys.
+#[pyfunction]
+pub(crate) fn case_keys() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
+    let names = |keys: &[Key]| keys.iter().map(|key| key.name).collect();
+    TABLES.iter().map(|table| (table.table, table.problems, names(table.keys))).collect()
 }
 
 /// Shipped cases, and the catalogue: names with a line about each.
@@ -58,6 +66,32 @@ impl RawCase {
         &self.case.name
     }
 
+    /// The word of `problem` in its file, or the name of a problem of the catalogue.
+    #[getter]
+    fn problem(&self) -> &str {
+        match &self.case.problem {
+            ProblemCase::Contact(_) => "contact",
+            ProblemCase::TwoPlates(_) => "two-plates",
+            ProblemCase::RingLoad(_) => "ring-load",
+            ProblemCase::Catalogue(case) => &case.name,
+        }
+    }
+
+    /// Whether its quantities have units.
+    #[getter]
+    fn is_physical(&self) -> bool {
+        matches!(&self.case.problem, ProblemCase::Contact(case) if case.physical.is_some())
+    }
+
+    /// Names of the parameters of a problem of the catalogue, but for the continued one.
+    #[getter]
+    fn parameters(&self) -> Vec<&str> {
+        match &self.case.problem {
+            ProblemCase::Catalogue(case) => case.parameters.keys().map(String::as_str).collect(),
+            _ => Vec::new(),
+        }
+    }
+
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.notes.clone()
@@ -65,6 +99,22 @@ impl RawCase {
 
     fn to_toml(&self) -> String {
         self.case.to_toml()
+    }
+
+    /// The meridian in a state: distances from the axis, heights, pressure of the film.
+    #[allow(clippy::type_complexity)]
+    fn meridian<'py>(
+        &self,
+        py: Python<'py>,
+        u: Vec<f64>,
+        parameter: f64,
+    ) -> PyResult<Option<[Bound<'py, PyArray1<f64>>; 3]>> {
+        let found = py.detach(|| run::meridian(&self.case, &u, parameter));
+        let found = found.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let arrays = |one: Outline| {
+            [one.sigma, one.z, one.pressure].map(|values| PyArray1::from_vec(py, values))
+        };
+        Ok(found.map(arrays))
     }
 
     /// A branch: its record, and the exception that ended it.
@@ -173,7 +223,7 @@ impl Watcher {
     }
 }
 
-fn json<E: std::fmt::Display>(text: Result<String, E>) -> PyResult<String> {
+pub(crate) fn json<E: std::fmt::Display>(text: Result<String, E>) -> PyResult<String> {
     text.map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }
 
@@ -232,6 +282,16 @@ fn trace_dict<'py>(py: Python<'py>, result: &TraceResult) -> PyResult<Bound<'py,
         modes.set_item(shape.event, one)?;
     }
     dict.set_item("modes", modes)?;
+    let states = PyList::empty(py);
+    for event in &result.events {
+        let vectors = PyList::empty(py);
+        for vector in &event.eigenvectors {
+            let imaginary = (!vector.im.is_empty()).then(|| PyArray1::from_slice(py, &vector.im));
+            vectors.append((PyArray1::from_slice(py, &vector.re), imaginary))?;
+        }
+        states.append((PyArray1::from_slice(py, &event.u), vectors))?;
+    }
+    dict.set_item("states", states)?;
     Ok(dict)
 }
 

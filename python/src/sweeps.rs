@@ -24,16 +24,27 @@ fn refuse(error: impl std::fmt::Display) -> PyErr {
 
 #[pymethods]
 impl RawSweep {
-    /// The sweep of a file, or a shipped one by its name.
+    /// The sweep of a file, or a shipped one by its name; of a shard `k/n` its share of the cases.
     #[new]
-    fn new(path: PathBuf) -> PyResult<Self> {
-        let sweep = load(&path, Shard::ALL, &catalogue()).map_err(refuse)?;
+    #[pyo3(signature = (path, shard = None))]
+    fn new(path: PathBuf, shard: Option<&str>) -> PyResult<Self> {
+        let shard = match shard {
+            None => Shard::ALL,
+            Some(text) => text.parse().map_err(|why| refuse(format!("shard={text:?}: {why}")))?,
+        };
+        let sweep = load(&path, shard, &catalogue()).map_err(refuse)?;
         Ok(RawSweep { sweep })
     }
 
     #[getter]
     fn name(&self) -> &str {
         &self.sweep.plan.name
+    }
+
+    /// What the program appends to the name of a shard's folder.
+    #[getter]
+    fn suffix(&self) -> String {
+        self.sweep.plan.shard.suffix()
     }
 
     fn __len__(&self) -> usize {

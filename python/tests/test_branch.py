@@ -14,6 +14,27 @@ def branch(cusp):
     return cusp.trace("mu", [-1.5], [-2, 1], 2)
 
 
+def test_a_column_is_there_at_once(cusp):
+    cusp.trace("mu", [-1.5], [-2, 1], 2)["x"]  # the first one of a process loads what it needs
+    times = []
+    for _ in range(20):
+        branch = cusp.trace("mu", [-1.5], [-2, 1], 2)
+        start = time.perf_counter()
+        branch["x"]
+        times.append(time.perf_counter() - start)
+    assert min(times) < 10e-6, times
+
+
+def test_the_critical_mode_is_there(branch, pitchfork):
+    fold = branch.events.of("LP")[0]
+    assert np.array_equal(branch.shape(fold), fold.modes[0]) and fold.modes[0].shape == (1,)
+    trunk = pitchfork.trace("p", [0], [-1], 1)
+    assert np.array_equal(np.abs(trunk.shape(trunk.events[0])), [1.0])
+    for wrong in (trunk.events[0], branch[0], None):
+        with pytest.raises(TypeError):
+            branch.shape(wrong)
+
+
 def test_columns_are_cached_and_read_only(branch):
     assert branch.columns == ["mu", "x", "s", "dp_ds", "unstable", "certified"]
     assert branch["x"] is branch["x"] and branch["x"].dtype == np.float64

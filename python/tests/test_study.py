@@ -6,6 +6,7 @@ import pickle
 import shutil
 import signal
 import subprocess
+import time
 
 import numpy as np
 import pytest
@@ -81,6 +82,60 @@ def test_modes_at_losses_of_symmetry():
         if mode is not None:
             assert mode["n"] == event.record["n"] and mode["s"].shape == mode["w"].shape
             assert abs(np.abs(mode["w"]).max() - 1) < 1e-9
+
+
+@pytest.mark.parametrize("case", ["fig12", "ring-load", "two-plates", "bratu", "cantilever"])
+def test_states_and_null_vectors_at_special_points(case):
+    keys = {} if case == "bratu" else {"scan": "axisymmetric"} if case != "ring-load" else {}
+    branch = arclen.trace(case, **keys)
+    folds = branch.events.of("LP")
+    assert folds
+    for event in branch.events:
+        assert event.u.ndim == 1 and event.u.size > 10 and np.isfinite(event.u).all()
+        assert branch[0].u is None
+        meridian = branch.meridian(event)
+        assert (meridian is None) == (case == "bratu")
+        if meridian is not None:
+            assert meridian["sigma"].shape == meridian["z"].shape
+            # the shell closes at the pole and is about as wide as it was
+            assert abs(meridian["sigma"][0]) < 1e-9 and 0.8 < meridian["sigma"].max() < 1.3
+            if case == "fig12":
+                assert meridian["z"][0] == pytest.approx(event["pole_height"], abs=1e-6)
+    for fold in folds:
+        (mode,) = fold.modes
+        assert mode.shape == fold.u.shape and np.linalg.norm(mode) == pytest.approx(1)
+        assert np.iscomplexobj(mode) is False
+    again = pickle.loads(pickle.dumps(branch))
+    assert np.array_equal(again.events[0].u, branch.events[0].u)
+
+
+def test_a_case_is_checked_at_once():
+    times = []
+    for _ in range(50):
+        start = time.perf_counter()
+        arclen.Case("fig12", adhesion=3e-3, elements=100)
+        times.append(time.perf_counter() - start)
+    # the best: a busy machine may be late itself
+    assert min(times) < 1e-4, times
+
+
+def test_states_are_not_in_files(fig12, tmp_path):
+    fig12.save(tmp_path / "out")
+    fold = type(fig12).load(tmp_path / "out").events.of("LP")[0]
+    assert fold.u is None and fold.modes == []
+    assert fold.branch.meridian(fold) is None
+    with pytest.raises(TypeError):
+        fig12.meridian(fold)
+
+
+def test_every_bare_key_of_a_contact_case_finds_its_table():
+    shell = arclen.Case("fig12", law="skalak", bending=1e-4, pressure=1e-3, film=0.02, poisson=0.3)
+    shell = arclen.Case(shell, surface_tension=1e-3, gas_exponent=1.0, elements=50, start=1.1)
+    toml = shell.to_toml()
+    for text in ('law = "skalak"', "bending = 0.0001", "gas_exponent = 1", "start = 1.1"):
+        assert text in toml
+    assert "gas_exponent = 1.2" in arclen.Case(PHYSICAL, gas_exponent=1.2).to_toml()
+    assert 'kind = "dead-load"' in arclen.Case("fig12", kind="dead-load", start=-1.0).to_toml()
 
 
 def test_keys_by_name_with_table_and_as_a_dictionary():

@@ -114,14 +114,14 @@ class Deadly(concurrent.futures.Executor):
         self.pool = processes(1)
         self.always = always
 
-    def submit(self, function, path, changed, case, out):
-        return self.pool.submit(run_or_die, self.always, path, changed, case, out)
+    def submit(self, function, *arguments):
+        return self.pool.submit(run_or_die, self.always, *arguments)
 
 
-def run_or_die(always, path, changed, case, out):
+def run_or_die(always, path, changed, case, *arguments):
     if case == always:
         os.kill(os.getpid(), signal.SIGKILL)
-    return _sweep._run(path, changed, case, out)
+    return _sweep._run(path, changed, case, *arguments)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
@@ -136,10 +136,10 @@ def test_a_killed_worker_costs_nothing(sweep, tmp_path):
 
 def test_a_case_that_always_fails_is_reported(sweep, tmp_path):
     class Failing(concurrent.futures.ThreadPoolExecutor):
-        def submit(self, function, path, changed, case, out):
+        def submit(self, function, path, changed, case, *arguments):
             if case == 2:
                 return super().submit(int, "no number")
-            return super().submit(function, path, changed, case, out)
+            return super().submit(function, path, changed, case, *arguments)
 
     with Failing(2) as pool:
         study = arclen.study(sweep, pool, tmp_path / "out")
@@ -171,3 +171,37 @@ def test_errors_of_sweeps(tmp_path):
     (tmp_path / "bad.toml").write_text(SWEEP.replace('adhesion"', 'adhesoin"'))
     with pytest.raises(ValueError, match="adhesoin"):
         arclen.study(tmp_path / "bad.toml")
+
+
+def test_shards_unite(sweep, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shares = [arclen.study(sweep, shard=f"{k}/3") for k in (1, 2, 3)]
+    assert [len(share) for share in shares] == [2, 1, 1]
+    folders = [share.out for share in shares]
+    assert folders[0].endswith("arclen-out/films-1-of-3")
+    assert arclen.main(["merge", *folders, "--out", "all", "--quiet"]) == 0
+    assert len(json.loads((tmp_path / "all/sweep.json").read_text())["cases"]) == 4
+    with pytest.raises(ValueError, match='shard="4/3": expected k/n'):
+        arclen.study(sweep, shard="4/3")
+
+
+def test_a_case_with_keys_that_vary(sweep, tmp_path):
+    case = arclen.Case(_case(1e-4))
+    study = case.sweep({"adhesion": [1e-4, 2e-4, 3e-4, 4e-4]}, out=tmp_path / "out")
+    assert study.keys == ["dimensionless.adhesion"] and len(study) == 4
+    arclen.study(sweep, out=tmp_path / "file")
+    force = arclen.study(sweep, out=tmp_path / "file").curves["force"]
+    assert np.array_equal(study.curves["force"], force, equal_nan=True)
+    # the sweep is a file of the program beside what it gave
+    again = arclen.study(tmp_path / "out" / "sweep.toml", out=tmp_path / "out")
+    assert again.records == study.records
+    grid = case.sweep(
+        {"bending": {"from": 1e-3, "to": 1e-2, "count": 2, "scale": "log"}, "law": ["hooke"]},
+        out=tmp_path / "grid",
+    )
+    assert [grid.values(k)["dimensionless.bending"] for k in range(2)] == [1e-3, 1e-2]
+    for wrong in ({}, 3, None):
+        with pytest.raises(TypeError):
+            case.sweep(wrong)
+    with pytest.raises(ValueError, match="adhesoin"):
+        case.sweep({"adhesoin": [1.0]}, out=tmp_path / "bad")

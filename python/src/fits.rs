@@ -1,0 +1,161 @@
+//! Fits of measured curves, and plans of measurements: the program's own.
+
+use crate::attended::attended;
+use crate::studies::{RawCase, given, json};
+use identify::LawName;
+use identify::data::Direction;
+use numpy::PyArray1;
+use pictures::fit::{Drawn, draw_fit};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+use study::fit::files::{files, fit_json, summary};
+use study::fit::lab::{self, Lab, Wishes};
+use study::fit::plan::planned;
+use study::fit::{self, Failure, Laws, Outcome};
+
+/// What is asked of a fit, in the words of the program's options.
+#[derive(Clone, FromPyObject)]
+pub(crate) struct Asked {
+    #[pyo3(item)]
+    fix: Vec<String>,
+    #[pyo3(item)]
+    free: Vec<String>,
+    #[pyo3(item)]
+    prior: Vec<String>,
+    #[pyo3(item)]
+    segments: Option<String>,
+    #[pyo3(item)]
+    range: Option<String>,
+    #[pyo3(item)]
+    robust: bool,
+}
+
+impl Asked {
+    fn wishes(&self) -> Wishes<'_> {
+        Wishes {
+            fix: &self.fix,
+            free: &self.free,
+            prior: &self.prior,
+            only: match self.segments.as_deref() {
+                Some("approach") => Some(Direction::Approach),
+                Some("retract") => Some(Direction::Retract),
+                _ => None,
+            },
+            range: self.range.as_deref(),
+            robust: self.robust,
+        }
+    }
+}
+
+fn laboratory(known: Option<&PathBuf>, keys: Vec<String>) -> PyResult<Lab> {
+    lab::load(known.map(PathBuf::as_path), &given(keys))
+        .map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+/// The tables of a file of known values, and their keys.
+#[pyfunction]
+pub(crate) fn lab_keys() -> Vec<(&'static str, Vec<String>)> {
+    lab::keys().into()
+}
+
+/// The places of curves: a file, or a file and a number in it.
+#[pyfunction]
+pub(crate) fn curve_sources(
+    paths: Vec<PathBuf>,
+    known: Option<PathBuf>,
+    keys: Vec<String>,
+) -> PyResult<Vec<(PathBuf, Option<usize>)>> {
+    let lab = laboratory(known.as_ref(), keys)?;
+    let found = fit::sources(&paths, &lab);
+    Ok(found.into_iter().map(|source| (source.path, source.number)).collect())
+}
+
+/// A fit of one curve: its record, or in words why nothing fits it.
+type Found<'py> = (Option<Bound<'py, PyDict>>, Option<String>);
+
+/// Fits one curve.
+#[pyfunction]
+pub(crate) fn fit_curve<'py>(
+    py: Python<'py>,
+    curve: (PathBuf, Option<usize>),
+    known: Option<PathBuf>,
+    keys: Vec<String>,
+    law: Option<&str>,
+    profile: Option<&str>,
+    asked: Asked,
+) -> PyResult<Found<'py>> {
+    let lab = laboratory(known.as_ref(), keys)?;
+    let laws = match law {
+        None => Laws::Known,
+        Some("all") => Laws::All,
+        Some(name) => match LawName::of(name) {
+            Some(law) => Laws::One(law),
+            None => {
+                let known = LawName::ALL.map(LawName::name).join(", ");
+                let text = format!("law={name}: must be one of {known}, all");
+                return Err(PyValueError::new_err(text));
+            }
+        },
+    };
+    let profiles = fit::profiles(profile).map_err(PyValueError::new_err)?;
+    let source = fit::Source { path: curve.0, number: curve.1 };
+    let work = move || fit::fit_file(&source, &lab, laws, asked.wishes(), &profiles);
+    // a fit cannot be stopped; what it finds is not waited for
+    match attended(py, work, Some)? {
+        Ok(outcome) => Ok((Some(record(py, &outcome)?), None)),
+        Err(Failure::Input(message)) => Err(PyValueError::new_err(message)),
+        Err(Failure::NotFound(message)) => Ok((None, Some(message))),
+    }
+}
+
+fn record<'py>(py: Python<'py>, outcome: &Outcome) -> PyResult<Bound<'py, PyDict>> {
+    let fault = |error: &dyn std::fmt::Display| PyRuntimeError::new_err(error.to_string());
+    let dict = PyDict::new(py);
+    dict.set_item("json", json(fit_json(outcome))?)?;
+    dict.set_item("summary", summary(outcome))?;
+    dict.set_item("good", outcome.best.report.is_good())?;
+    let written = PyDict::new(py);
+    let tables = files(outcome).map_err(|error| fault(&error))?;
+    let drawn = draw_fit(outcome, Drawn::Svg).map_err(|error| fault(&error))?;
+    for (name, bytes) in tables.into_iter().chain(drawn) {
+        written.set_item(name, String::from_utf8_lossy(&bytes))?;
+    }
+    dict.set_item("files", written)?;
+    let rows = &outcome.best.rows;
+    let columns = PyDict::new(py);
+    let segments: Vec<&str> = rows.iter().map(|row| row.segment).collect();
+    columns.set_item("segment", segments)?;
+    type Number = fn(&identify::record::Row) -> f64;
+    let numbers: [(&str, Number); 6] = [
+        ("piezo", |row| row.piezo),
+        ("separation", |row| row.separation),
+        ("approach_one_pole", |row| row.approach_one_pole),
+        ("force", |row| row.force),
+        ("model", |row| row.model),
+        ("residual", |row| row.residual),
+    ];
+    for (name, number) in numbers {
+        columns.set_item(name, PyArray1::from_vec(py, rows.iter().map(number).collect()))?;
+    }
+    columns.set_item("used", PyArray1::from_vec(py, rows.iter().map(|row| row.used).collect()))?;
+    dict.set_item("columns", columns)?;
+    Ok(dict)
+}
+
+/// What a measurement of a case would identify: JSON, and a table for people.
+#[pyfunction]
+pub(crate) fn plan_measurement(
+    py: Python<'_>,
+    case: &RawCase,
+    known: Option<PathBuf>,
+    keys: Vec<String>,
+    asked: Asked,
+) -> PyResult<(String, String)> {
+    let lab = laboratory(known.as_ref(), keys)?;
+    let case = case.case.clone();
+    let work = move || planned(&case, &lab, asked.wishes());
+    let plan = attended(py, work, Some)?.map_err(PyValueError::new_err)?;
+    Ok((json(plan.json())?, plan.summary()))
+}
