@@ -1,5 +1,6 @@
 //! Bordered systems by mixed block elimination.
 
+use super::complement::Complement;
 use super::vector::{ROUNDING, add_scaled, dot, dot_magnitude, max_abs, pivot_or_floor, sign};
 use super::{Dense, Facts, Matrix};
 
@@ -38,8 +39,8 @@ pub struct BorderedFacts {
     pub schur: f64,
     /// Sign of the determinant of the whole bordered matrix; right also where the core is
     /// singular. `None` if the bordered matrix is singular to rounding; beyond 200 unknowns also if
-    /// the core does not know the sign of its factors, or if it is singular more than once: the
-    /// solutions are accurate then, but the signs of the single Schur complements are rounding.
+    /// the core does not know the sign of its factors, or if it is singular and the borders before the
+    /// last one do not cure that: the solutions are accurate then, but the signs of the single Schur complements are rounding.
     pub det_sign: Option<i8>,
     /// Numbers of (negative, positive) eigenvalues of the whole matrix, if it is symmetric and the
     /// core reports its own; `None` also where the sign of the determinant is unknown.
@@ -77,6 +78,7 @@ pub struct Bordered {
     dense: Option<Box<Dense>>,
     dense_scales: [Vec<f64>; 2],
     dense_solves: bool,
+    complement: Complement,
 }
 
 impl Bordered {
@@ -100,6 +102,7 @@ impl Bordered {
             dense: None,
             dense_scales: [vec![1.0; m], vec![1.0; m]],
             dense_solves: false,
+            complement: Complement::new(m),
         }
     }
 
@@ -140,8 +143,40 @@ impl Bordered {
         if last_replaced {
             (facts.det_sign, facts.inertia) = (None, None);
         }
-        facts.det_sign = facts.det_sign.or_else(|| self.dense_sign(a));
+        let core = facts.core;
+        facts.det_sign = facts.det_sign.or_else(|| self.other_sign(a, &core));
         facts
+    }
+
+    /// Sign of the determinant where the Schur complements of one border after the other do not tell.
+    fn other_sign<A: Matrix>(&mut self, a: &mut A, core: &Facts) -> Option<i8> {
+        self.dense_sign(a).or_else(|| self.complement_sign(a, core))
+    }
+
+    /// Sign of the determinant from that of a regular core and the Schur complement of all borders at
+    /// once, whose rows may be taken in any order: `None` where the core is singular, or nearly.
+    fn complement_sign<A: Matrix>(&mut self, a: &mut A, core: &Facts) -> Option<i8> {
+        let n = self.n;
+        let sign = core.det_sign.filter(|_| core.perturbed == 0 && self.m > 1)?;
+        for k in 0..self.m {
+            let mut x = std::mem::take(&mut self.trial);
+            x[..n].copy_from_slice(self.column(k));
+            a.solve(&mut x[..n]);
+            let size = max_abs(self.column(k));
+            let growth = if size > 0.0 { self.core_norm * max_abs(&x[..n]) / size } else { 1.0 };
+            for i in 0..self.m {
+                let d = self.corner(i, k, false);
+                let value = d - dot(self.row(i), &x[..n]);
+                let terms = d.abs() + dot_magnitude(self.row(i), &x[..n]);
+                let error = NOISE * f64::EPSILON * growth.max(1.0) * terms;
+                self.complement.set(i, k, value, error);
+            }
+            self.trial = x;
+            if growth > SINGULAR || !growth.is_finite() {
+                return None;
+            }
+        }
+        self.complement.det_sign().map(|complement| sign * complement)
     }
 
     /// Sign of the determinant of a small matrix from a dense copy, rows and columns of the borders
@@ -236,7 +271,8 @@ impl Bordered {
         }
         if !known {
             // a regular matrix all the same, if the copy says so
-            facts.det_sign = self.dense_sign(a);
+            let core = facts.core;
+            facts.det_sign = self.other_sign(a, &core);
             perturbed = if facts.det_sign.is_some() { 0 } else { perturbed };
         }
         Facts {

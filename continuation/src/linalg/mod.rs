@@ -29,6 +29,7 @@ mod arnoldi;
 mod arrow;
 mod band;
 mod bordered;
+mod complement;
 mod dense;
 mod eigen;
 mod half_plane;

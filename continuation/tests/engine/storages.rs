@@ -9,7 +9,7 @@ use continuation::{
 use std::ops::ControlFlow;
 
 /// Where entries of a Jacobian go.
-trait Entries: Matrix {
+pub(crate) trait Entries: Matrix {
     fn new(n: usize, pattern: &[(usize, usize)], band: usize) -> Self;
     fn put(&mut self, i: usize, j: usize, value: f64);
 }
@@ -42,18 +42,18 @@ impl Entries for Sparse {
 }
 
 /// The Brusselator on a line, concentrations held at the ends: `u″` and `v″` with the constants
-/// `D`, rates with `A = 2`, `B` the parameter. The homogeneous state loses stability to
-/// oscillations with `k` half waves at `B = 1 + A² + (D₁ + D₂) κ_k`.
-struct Brusselator<J> {
+/// `D`, rates with `A = 2`; `B` and the length `L` are the parameters. The homogeneous state loses
+/// stability to oscillations with `k` half waves at `B = 1 + A² + (D₁ + D₂) κ_k / L²`.
+pub(crate) struct Brusselator<J> {
     cells: usize,
     matrix: std::marker::PhantomData<fn() -> J>,
 }
 
-const A: f64 = 2.0;
-const D: [f64; 2] = [0.008, 0.004];
+pub(crate) const A: f64 = 2.0;
+pub(crate) const D: [f64; 2] = [0.008, 0.004];
 
 impl<J: Entries> Brusselator<J> {
-    fn new(cells: usize) -> Self {
+    pub(crate) fn new(cells: usize) -> Self {
         Brusselator { cells, matrix: std::marker::PhantomData }
     }
 
@@ -61,13 +61,13 @@ impl<J: Entries> Brusselator<J> {
         1.0 / (self.cells + 1) as f64
     }
 
-    /// Eigenvalue of the negative second difference.
-    fn kappa(&self, k: usize) -> f64 {
+    /// Eigenvalue of the negative second difference at `L = 1`.
+    pub(crate) fn kappa(&self, k: usize) -> f64 {
         let h = self.h();
         4.0 / (h * h) * (0.5 * std::f64::consts::PI * k as f64 * h).sin().powi(2)
     }
 
-    fn pattern(&self) -> Vec<(usize, usize)> {
+    pub(crate) fn pattern(&self) -> Vec<(usize, usize)> {
         let n = 2 * self.cells;
         let mut pattern = Vec::new();
         for i in 0..n {
@@ -89,7 +89,10 @@ impl<J: Entries> Problem for Brusselator<J> {
     }
 
     fn parameters(&self) -> &[Parameter] {
-        &[Parameter { name: "B", unit: "", scale: 1.0 }]
+        &[
+            Parameter { name: "B", unit: "", scale: 1.0 },
+            Parameter { name: "L", unit: "", scale: 1.0 },
+        ]
     }
 
     fn new_jacobian(&self) -> J {
@@ -97,7 +100,7 @@ impl<J: Entries> Problem for Brusselator<J> {
     }
 
     fn residual(&self, x: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
-        let (n, h2) = (self.cells, self.h() * self.h());
+        let (n, h2) = (self.cells, (p[1] * self.h()).powi(2));
         let ends = [A, p[0] / A];
         for i in 0..n {
             let (u, v) = (x[2 * i], x[2 * i + 1]);
@@ -112,7 +115,7 @@ impl<J: Entries> Problem for Brusselator<J> {
     }
 
     fn jacobian(&self, x: &[f64], p: &[f64], j: &mut J) -> Result<(), EvalError> {
-        let (n, h2) = (self.cells, self.h() * self.h());
+        let (n, h2) = (self.cells, (p[1] * self.h()).powi(2));
         j.set_zero();
         for i in 0..n {
             let (u, v) = (x[2 * i], x[2 * i + 1]);
@@ -137,11 +140,21 @@ impl<J: Entries> Problem for Brusselator<J> {
     fn parameter_derivative(
         &self,
         x: &[f64],
-        _: &[f64],
-        _: ParamId,
+        p: &[f64],
+        which: ParamId,
         out: &mut [f64],
     ) -> Result<(), EvalError> {
-        let (n, h2) = (self.cells, self.h() * self.h());
+        let (n, h2) = (self.cells, (p[1] * self.h()).powi(2));
+        if which.0 == 1 {
+            // diffusion is what a residual without rates is
+            let mut rates = vec![0.0; 2 * n];
+            self.residual(x, p, out)?;
+            self.residual(x, &[p[0], f64::INFINITY], &mut rates)?;
+            for (out, rates) in out.iter_mut().zip(&rates) {
+                *out = -2.0 / p[1] * (*out - rates);
+            }
+            return Ok(());
+        }
         for i in 0..n {
             let ends = f64::from(u8::from(i == 0)) + f64::from(u8::from(i + 1 == n));
             out[2 * i] = -x[2 * i];
@@ -155,9 +168,11 @@ impl<J: Entries> Problem for Brusselator<J> {
     }
 }
 
-fn follow<P: Problem>(problem: &P, u: &[f64], start: f64, end: f64) -> Branch {
+pub(crate) fn follow<P: Problem>(problem: &P, u: &[f64], start: f64, end: f64) -> Branch {
     let settings = Settings { target: Some(end), ..Settings::default() };
-    Tracer::new(problem, problem.parameters()[0].name, u, &[start], settings)
+    let mut p = vec![1.0; problem.parameters().len()];
+    p[0] = start;
+    Tracer::new(problem, problem.parameters()[0].name, u, &p, settings)
         .unwrap()
         .run(&mut |_| ControlFlow::Continue(()))
 }

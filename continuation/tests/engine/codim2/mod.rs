@@ -6,6 +6,7 @@ mod bands;
 mod branch_points;
 mod hopf;
 mod invariance;
+mod large;
 #[allow(dead_code, reason = "the factors for one parameter")]
 use crate::scaled;
 mod scales;
