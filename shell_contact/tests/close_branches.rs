@@ -66,3 +66,35 @@ fn needle_sharp_folds_are_passed_at_default_steps() {
         assert!((fold - known).abs() < 1e-8, "{folds:?}");
     }
 }
+
+/// Where the tangent turns fast a slope shows the error of a state much magnified: a bracket closed about
+/// places 1e-8 apart, said to be known to 7e-11.
+#[test]
+fn the_pull_off_is_known_as_well_as_it_says_at_every_step_length() {
+    let shell = Shell { law: Law::Skalak, poisson: 0.3235 };
+    let groups = Dimensionless {
+        bending: 3.615_359e-4,
+        pressure: 4.288_824e-3,
+        adhesion: 4.938_423e-3,
+        film: 2.839_31e-2,
+        surface_tension: 0.0,
+        gas_exponent: 1.07,
+    };
+    let problem = ContactProblem::new(&shell, &groups, Mesh::uniform(300).unwrap()).unwrap();
+    let mut places = Vec::new();
+    for k in 0..18 {
+        let max_step = Some(0.003 + 0.001 * f64::from(k));
+        let settings = Settings { target: Some(1.0), max_step, ..Settings::default() };
+        let branch = trace(&problem, 1.13357, settings).branch;
+        let pull_off = branch.events.iter().find(|event| event.kind.to_string() == "pull-off");
+        let event = pull_off.unwrap();
+        places.push((event.p, event.error_estimate));
+    }
+    let mean = places.iter().map(|(p, _)| p).sum::<f64>() / places.len() as f64;
+    let beyond = places.iter().filter(|(p, error)| (p - mean).abs() > *error).count();
+    assert!(
+        places.iter().all(|(p, error)| (p - mean).abs() < 1e-11 && *error < 1e-9),
+        "{places:?}"
+    );
+    assert!(beyond <= 2, "{beyond}: {places:?}");
+}

@@ -20,6 +20,14 @@ const SHORTER: f64 = 30.0;
 const REMAINS: f64 = 0.7;
 /// By how much a corner may exceed what the flatter slope explains.
 const CORNER: f64 = 1e3;
+/// Part of a step over which errors of a slope do not count.
+const FAR: f64 = 1e-3;
+/// The same for what only makes its rounding another.
+const ASIDE: f64 = 1e-9;
+/// By how much an error may exceed what two slopes show of it.
+const NOISE: f64 = 4.0;
+/// Most corrections of an extremum's place.
+const SETTLINGS: usize = 4;
 /// Shortest bracket: state and distance are rounded.
 const SHORTEST: f64 = 1e-14;
 
@@ -49,6 +57,7 @@ pub(crate) fn locate_watched<P: Problem + ?Sized>(
     let mut search = Search::new(0.0, ta, h, tb);
     // widths of the bracket with the difference between its ends
     let mut brackets = vec![(h, (tb - ta).abs())];
+    let mut values = vec![(0.0, ta), (h, tb)];
     let (mut correction, mut evaluated) = (0.0, None);
     for _ in 0..2 * MAX_EVALUATIONS {
         let at = search.next(0.3 * shortest);
@@ -59,6 +68,7 @@ pub(crate) fn locate_watched<P: Problem + ?Sized>(
             return Ok(None);
         }
         search.record(at, value);
+        values.push((at, value));
         brackets.push((search.width(), search.spread()));
         evaluated = Some(at);
         let near = search.error() <= tolerance || search.width() <= tolerance;
@@ -80,8 +90,50 @@ pub(crate) fn locate_watched<P: Problem + ?Sized>(
         }
         _ => shrinks,
     };
-    let error = error_at(&search, correction);
-    Ok(found.then_some(Located { at: best, error }))
+    let mut located = Located { at: best, error: error_at(&search, correction) };
+    if found && shrinks && matches!(candidate, Candidate::Extremum { .. }) {
+        let value = |x: &State| candidate.test(x, a.orientation);
+        settle(core, (a, h), (&values, tolerance), value, &mut located, x)?;
+    }
+    Ok(found.then_some(located))
+}
+
+/// Moves an extremum by what the slope of a state that is corrected once more says, and takes as its
+/// error what that changes: a slope shows the error of a state much magnified where the tangent turns
+/// fast, and then a bracket closes about a place that is no extremum.
+fn settle<P: Problem + ?Sized>(
+    core: &mut Core<'_, P>,
+    (a, h): (&State, f64),
+    (values, tolerance): (&[(f64, f64)], f64),
+    value: impl Fn(&State) -> f64,
+    located: &mut Located,
+    x: &mut State,
+) -> Result<(), Refusal> {
+    // how steep the slope is, over a distance on which its errors do not count
+    let own = value(x);
+    let away = values.iter().filter(|(at, _)| (at - located.at).abs() >= FAR * h);
+    let near = away.min_by(|p, q| (p.0 - located.at).abs().total_cmp(&(q.0 - located.at).abs()));
+    let Some(&(at, other)) = near else { return Ok(()) };
+    let steep = (other - own) / (at - located.at);
+    // a little beside it first, so that the rounding is another
+    let aside = ASIDE * if located.at > 0.5 * h { -h } else { h };
+    let (mut at, mut off) = (located.at + aside, f64::INFINITY);
+    for _ in 0..SETTLINGS {
+        let again = core.correct(Constraint::Plane(a, at), x, Precision::Event)?.last;
+        let now = (value(x) / steep).abs();
+        if !now.is_finite() {
+            return Ok(());
+        }
+        let known = again.max(f64::EPSILON * (1.0 + at));
+        (located.at, located.error) = (at, NOISE * now.max(known));
+        let done = now <= known || (off <= tolerance && now <= tolerance) || 2.0 * now >= off;
+        if done && off.is_finite() {
+            break;
+        }
+        off = now;
+        at = (at - value(x) / steep).clamp(0.0, h);
+    }
+    Ok(())
 }
 
 /// Whether the difference between the ends of the bracket has shrunk with it.
