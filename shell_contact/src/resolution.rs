@@ -6,10 +6,12 @@
 //! contact goes from one element to the next. Both are in `R0`; elements are measured unstretched.
 
 use crate::contact::ContactProblem;
+use crate::density::Coefficients;
 use crate::film::Potential;
 use crate::half::HalfMeridian;
+use crate::two_plates::{SupportedProblem, TwoPlatesProblem};
 use continuation::EvalError;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Elements per film length from which on a mesh is called fine enough. Of 369 random shells of all laws,
 /// with and without surface tension and grading, against meshes four times as fine: of those with so many
@@ -57,23 +59,72 @@ impl<F: Potential> ContactProblem<F> {
     /// When the parameters are out of range.
     pub fn resolution(&self, u: &[f64], p: &[f64]) -> Result<Resolution, EvalError> {
         let (c, _) = self.coefficients(u, p)?;
-        let mesh = &self.mesh;
-        let (mut longest, mut film) = (0.0_f64, f64::INFINITY);
-        for e in 0..mesh.elements() {
-            let (start, end) =
-                (HalfMeridian::knots(mesh).at(e), HalfMeridian::knots(mesh).at(e + 1));
-            let length = end - start;
-            longest = longest.max(length);
-            for part in [0.0, 0.5, 1.0] {
-                let at = start + part * length;
-                let [(_, w), ..] = mesh.displacement_in(u, e, at);
-                let delta = c.plate - at.cos() - w;
-                let stiffness = self.potential.jet(delta, c.adhesion, c.film).d2.abs();
-                let own = (c.bending / stiffness).sqrt().sqrt();
-                film = film.min(own / length);
-            }
+        Ok(of_half(&self.mesh, &self.potential, u, &c))
+    }
+}
+
+impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
+    /// How well the elements resolve the state `u` with the parameters `p`: the worse of both halves.
+    ///
+    /// # Errors
+    /// When the parameters are out of range.
+    pub fn resolution(&self, u: &[f64], p: &[f64]) -> Result<Resolution, EvalError> {
+        let (c, _) = self.coefficients(u.len(), p)?;
+        Ok(self.resolution_between(u, &c))
+    }
+
+    /// [`Self::resolution`] with plates at heights of their own.
+    pub(crate) fn resolution_between(&self, u: &[f64], c: &[Coefficients; 2]) -> Resolution {
+        let [top, bottom] = self.halves();
+        let upper = of_half(&top, &self.potentials.0, u, &c[0]);
+        upper.least(of_half(&bottom, &self.potentials.1, u, &c[1]))
+    }
+}
+
+impl<T: Potential, B: Potential> SupportedProblem<'_, T, B> {
+    /// How well the elements resolve the state `x` with the parameters `p`: the worse of both halves.
+    ///
+    /// # Errors
+    /// When the parameters are out of range.
+    pub fn resolution(&self, x: &[f64], p: &[f64]) -> Result<Resolution, EvalError> {
+        let (u, c, _) = self.inner(x, p)?;
+        Ok(self.shell().resolution_between(u, &c))
+    }
+}
+
+/// The wavelength of the shell.
+pub(crate) fn wavelength(c: &Coefficients) -> f64 {
+    TAU * c.bending.sqrt().sqrt()
+}
+
+/// Length of the longest of the elements that reach into an interval.
+pub(crate) fn longest(half: &impl HalfMeridian, (low, high): (f64, f64)) -> f64 {
+    let elements = (0..half.elements()).map(|e| (half.knots().at(e), half.knots().at(e + 1)));
+    let near = elements.filter(|(start, end)| *end > low && *start < high);
+    near.map(|(start, end)| end - start).fold(0.0, f64::max)
+}
+
+fn of_half<F: Potential>(
+    half: &impl HalfMeridian,
+    potential: &F,
+    u: &[f64],
+    c: &Coefficients,
+) -> Resolution {
+    let mut film = f64::INFINITY;
+    for e in 0..half.elements() {
+        let (start, end) = (half.knots().at(e), half.knots().at(e + 1));
+        let length = end - start;
+        for part in [0.0, 0.5, 1.0] {
+            let at = start + part * length;
+            let [(_, w), ..] = half.displacement_in(u, e, at);
+            let delta = c.plate - at.cos() - w;
+            let stiffness = potential.jet(delta, c.adhesion, c.film).d2.abs();
+            let own = (c.bending / stiffness).sqrt().sqrt();
+            film = film.min(own / length);
         }
-        let wavelength = TAU * c.bending.sqrt().sqrt();
-        Ok(Resolution { per_film_length: film, per_wavelength: wavelength / longest })
+    }
+    Resolution {
+        per_film_length: film,
+        per_wavelength: wavelength(c) / longest(half, (0.0, FRAC_PI_2)),
     }
 }

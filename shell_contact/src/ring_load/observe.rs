@@ -5,6 +5,7 @@ use crate::contact::with_law;
 use crate::energy;
 use crate::film::NoFilm;
 use crate::meridian::Mesh;
+use crate::resolution::{self, Resolution};
 use continuation::EvalError;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -106,6 +107,19 @@ impl RingLoadProblem {
                 highest_over_h: ((highest - ring) / h).max(0.0),
             })
         })
+    }
+
+    /// How well the elements resolve the shell with the parameters `p`, by the longest one within a
+    /// wavelength of the ring, beyond which what the ring does has decayed; there is no film.
+    ///
+    /// # Errors
+    /// When the parameters are out of range.
+    pub fn resolution(&self, u: &[f64], p: &[f64]) -> Result<Resolution, EvalError> {
+        let Values { alpha, c, .. } = self.values(u, p)?;
+        let wavelength = resolution::wavelength(&c);
+        let near = (alpha - wavelength, alpha + wavelength);
+        let longest = self.with_mesh(alpha, |mesh, _, _| resolution::longest(mesh, near));
+        Ok(Resolution { per_film_length: f64::INFINITY, per_wavelength: wavelength / longest })
     }
 
     /// The deformed meridian at `samples` places from pole to equator.

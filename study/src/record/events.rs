@@ -72,7 +72,7 @@ impl Serialize for ResolutionOf<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("enough", &self.0.enough)?;
-        map.serialize_entry("z0", &self.0.z0)?;
+        map.serialize_entry(self.0.parameter, &self.0.at)?;
         map.serialize_entry("elements_per_film_length", &self.0.per_film_length)?;
         map.serialize_entry("elements_per_wavelength", &self.0.per_wavelength)?;
         map.serialize_entry("elements", &self.0.elements)?;

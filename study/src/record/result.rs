@@ -355,14 +355,16 @@ impl StabilityRecord {
 /// How well the elements resolve what the solution varies on, where that is worst.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResolutionRecord {
-    /// Elements per film length.
+    /// Elements per film length; infinite without a film.
     pub per_film_length: f64,
     /// Elements per wavelength of the shell.
     pub per_wavelength: f64,
     /// How many of both are called enough.
     pub needed: [f64; 2],
-    /// Plate distance where that is.
-    pub z0: f64,
+    /// Where that is.
+    pub at: f64,
+    /// Of which quantity: `z0`, or the parameter of a shell without plates.
+    pub parameter: &'static str,
     /// Whether both are enough.
     pub enough: bool,
     /// Elements of the mesh.
@@ -377,14 +379,17 @@ impl ResolutionRecord {
         if self.enough {
             return String::new();
         }
+        let film = if self.per_film_length.is_finite() {
+            format!("{:.2} per film length ({} needed) and ", self.per_film_length, self.needed[0])
+        } else {
+            String::new()
+        };
         format!(
-            "not resolved: at z0 = {:.5} {} elements are {:.2} per film length ({} needed) \
-             and {:.1} per wavelength of the shell ({} needed): folds and forces may be those of the \
-             mesh; take mesh.elements = {} or more\n",
-            self.z0,
+            "not resolved: at {} = {:.5} {} elements are {film}{:.1} per wavelength of the shell ({} \
+             needed): folds and forces may be those of the mesh; take mesh.elements = {} or more\n",
+            self.parameter,
+            self.at,
             self.elements,
-            self.per_film_length,
-            self.needed[0],
             self.per_wavelength,
             self.needed[1],
             self.wanted,

@@ -275,7 +275,7 @@ impl Search<'_, '_> {
         self.out.further += inner.filter(|event| event.point > 0 && event.point < last).count();
         let began = branch.began.as_ref().map(|stop| stop.reason);
         let (trace, curve): (TraceResult, Curve) =
-            two_plates::on_diagram(self.case, &traced, &stability);
+            two_plates::on_diagram(self.case, self.problem, &traced, &stability);
         self.out.branches.push(BranchRecord {
             id,
             from,

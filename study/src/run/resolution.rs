@@ -1,6 +1,7 @@
 //! Whether the elements resolve the film and the shell along a contact branch.
 
 use crate::record::{Cell, ResolutionRecord};
+use continuation::{Branch, Point};
 use shell_contact::resolution::{FEWEST_PER_FILM_LENGTH, FEWEST_PER_WAVELENGTH};
 use shell_contact::{ContactBranch, ContactProblem, Resolution};
 
@@ -13,31 +14,34 @@ pub(super) struct Resolved {
 impl Resolved {
     /// Looks at every point of a branch of `problem`.
     pub(super) fn of(problem: &ContactProblem, traced: &ContactBranch) -> Resolved {
-        let branch = &traced.branch;
         let unknowns = problem.mesh().unknowns();
-        let height = branch.observables.iter().position(|name| name == "z0");
-        let at = |point: &continuation::Point| match height {
-            Some(k) => point.observables[k],
-            None => point.p,
+        let height = height(&traced.branch);
+        let look = |point: &Point| {
+            let parameters = problem.parameters_at(height(point));
+            problem.resolution(&point.u[..unknowns], &parameters).ok()
         };
-        let each: Vec<Option<Resolution>> = branch
-            .points
-            .iter()
-            .map(|point| {
-                let parameters = problem.parameters_at(at(point));
-                problem.resolution(&point.u[..unknowns], &parameters).ok()
-            })
-            .collect();
+        let each = traced.branch.points.iter().map(look).collect();
+        Resolved::along(&traced.branch, problem.mesh().elements(), ("z0", height), each)
+    }
+
+    /// What is known at `each` point of a branch; `place` is where it is, in the quantity `parameter`.
+    pub(super) fn along(
+        branch: &Branch,
+        elements: usize,
+        (parameter, place): (&'static str, impl Fn(&Point) -> f64),
+        each: Vec<Option<Resolution>>,
+    ) -> Resolved {
         let all = branch.points.iter().zip(&each).filter_map(|(point, one)| Some((point, (*one)?)));
         let worst = all.max_by(|a, b| a.1.factor().total_cmp(&b.1.factor()));
         let record = worst.map(|(point, worst)| ResolutionRecord {
             per_film_length: worst.per_film_length,
             per_wavelength: worst.per_wavelength,
             needed: [FEWEST_PER_FILM_LENGTH, FEWEST_PER_WAVELENGTH],
-            z0: at(point),
+            at: place(point),
+            parameter,
             enough: worst.is_enough(),
-            elements: problem.mesh().elements(),
-            wanted: (worst.factor() * problem.mesh().elements() as f64).ceil() as usize,
+            elements,
+            wanted: (worst.factor() * elements as f64).ceil() as usize,
         });
         Resolved { each, record }
     }
@@ -63,4 +67,10 @@ impl Resolved {
     pub(super) fn titled(&self, title: &str) -> String {
         self.record.map_or_else(|| title.to_owned(), |record| record.titled(title))
     }
+}
+
+/// Half the distance of the plates at a point, which a device reports beside its own parameter.
+pub(super) fn height(branch: &Branch) -> impl Fn(&Point) -> f64 + Copy + use<> {
+    let at = branch.observables.iter().position(|name| name == "z0");
+    move |point| at.map_or(point.p, |k| point.observables[k])
 }

@@ -3,13 +3,14 @@
 
 use super::contact::law;
 use super::form::{StabilityColumns, certified, form};
+use super::resolution::Resolved;
 use super::states::of_ring_load;
 use super::{Observer, Progress, RunError, listen, settings};
 use crate::case::{PathCase, ResolvedCase, RingLoadCase};
 use crate::record::view::{Curve, Mark, Shape, Stability};
 use crate::record::{Cell, EventRecord, Pictures, RING, Table, TraceResult};
 use continuation::diagram::{Diagram, Origin};
-use continuation::{Branch, Settings, TraceError, Tracer, Watch};
+use continuation::{Branch, Point, Settings, TraceError, Tracer, Watch};
 use shell_contact::{RingGroups, RingLoadProblem, Shell};
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -97,8 +98,9 @@ pub(super) fn run(
     let shapes = shapes(&problem, &branch);
     let mut branch = branch;
     to_degrees(&mut branch);
+    let resolved = resolved(ring, &problem, &branch);
     let pictures = Pictures {
-        title: case.name.clone(),
+        title: resolved.titled(&case.name),
         diagram: Some((AXES.0.to_owned(), AXES.1.to_owned(), curve(&branch))),
         shapes,
         states: if reported {
@@ -108,7 +110,21 @@ pub(super) fn run(
         },
         ..Pictures::default()
     };
-    Ok(TraceResult { pictures, ..result(case, &branch, seconds) })
+    let resolution = resolved.record();
+    Ok(TraceResult { pictures, resolution, ..result(case, &branch, seconds) })
+}
+
+/// Whether the elements about the ring resolve the shell along a branch in degrees.
+pub(super) fn resolved(
+    ring: &RingLoadCase,
+    problem: &RingLoadProblem,
+    branch: &Branch,
+) -> Resolved {
+    let look = |point: &Point| {
+        problem.resolution(&point.u, &problem.parameters_at(point.p.to_radians())).ok()
+    };
+    let each = branch.points.iter().map(look).collect();
+    Resolved::along(branch, ring.mesh.elements, ("alpha", |point: &Point| point.p), each)
 }
 
 /// An observer of angles in degrees hears of angles in radians.

@@ -2,17 +2,18 @@
 
 use super::contact::{SAMPLES, drawn, event_record, loaded_path, no_start, path, row};
 use super::form::{StabilityColumns, certified};
+use super::resolution::{Resolved, height};
 use super::stability::Stability;
 use super::{Observer, RunError, listen};
 use crate::case::{PlateCase, ResolvedCase, TwoPlatesCase};
 use crate::record::view::{self, Curve, Profile, Shape};
 use crate::record::{Cell, ContactRow, EventRecord, Pictures, Table, TraceResult};
-use continuation::{Branch, EvalError, Tracer};
+use continuation::{Branch, EvalError, Point, Tracer};
 use shell_contact::modes::WholeShell;
 use shell_contact::two_plates::{
     Plate, Support, SupportedProblem, TwoPlatesGroups, TwoPlatesProblem,
 };
-use shell_contact::{ContactBranch, Mesh, Observation, Shell, force_watches};
+use shell_contact::{ContactBranch, Mesh, Observation, Resolution, Shell, force_watches};
 use std::time::Instant;
 
 /// The columns that follow the fixed ones.
@@ -27,6 +28,8 @@ pub(super) trait BetweenPlates: WholeShell {
     fn whole(&self, x: &[f64], p: &[f64]) -> Result<Observation, EvalError>;
     /// Heights of both plates.
     fn heights(&self, x: &[f64], p: &[f64]) -> Result<[f64; 2], EvalError>;
+    /// How well the elements resolve a state, and how many a half has.
+    fn resolution(&self, x: &[f64], p: &[f64]) -> Result<(Resolution, usize), EvalError>;
 }
 
 impl BetweenPlates for TwoPlatesProblem {
@@ -41,6 +44,10 @@ impl BetweenPlates for TwoPlatesProblem {
     fn heights(&self, _: &[f64], p: &[f64]) -> Result<[f64; 2], EvalError> {
         Ok([p[0], -p[0]])
     }
+
+    fn resolution(&self, x: &[f64], p: &[f64]) -> Result<(Resolution, usize), EvalError> {
+        Ok((TwoPlatesProblem::resolution(self, x, p)?, self.mesh().elements()))
+    }
 }
 
 impl BetweenPlates for SupportedProblem<'_> {
@@ -54,6 +61,10 @@ impl BetweenPlates for SupportedProblem<'_> {
 
     fn heights(&self, x: &[f64], p: &[f64]) -> Result<[f64; 2], EvalError> {
         self.plates(x, p)
+    }
+
+    fn resolution(&self, x: &[f64], p: &[f64]) -> Result<(Resolution, usize), EvalError> {
+        Ok((SupportedProblem::resolution(self, x, p)?, self.shell().mesh().elements()))
     }
 }
 
@@ -134,9 +145,26 @@ impl WithPlates for Trace<'_, '_> {
         let mut traced = ContactBranch::new(branch, None);
         let stability = Stability::of_whole(case, problem, &mut traced, observer);
         let seconds = clock.elapsed().as_secs_f64();
-        let pictures = pictures(case, problem, &traced, &stability);
-        Ok(TraceResult { pictures, ..result(case, &traced, &stability, seconds) })
+        let resolved = resolved(problem, &traced.branch);
+        let title = resolved.titled(&case.name);
+        let pictures = pictures(title, problem, &traced, &stability);
+        let resolution = resolved.record();
+        Ok(TraceResult { pictures, resolution, ..result(case, &traced, &stability, seconds) })
     }
+}
+
+/// Whether the elements of either half resolve the films and the shell along a branch.
+fn resolved<P: BetweenPlates>(problem: &P, branch: &Branch) -> Resolved {
+    let mut p = branch.parameters.clone();
+    let mut elements = 0;
+    let look = |point: &Point| {
+        p[0] = point.p;
+        let (found, number) = problem.resolution(&point.u, &p).ok()?;
+        elements = number;
+        Some(found)
+    };
+    let each = branch.points.iter().map(look).collect();
+    Resolved::along(branch, elements, ("z0", height(branch)), each)
 }
 
 /// The tracer's settings in the parameter `name`.
@@ -200,13 +228,15 @@ fn observed(branch: &Branch, index: usize, name: &str) -> f64 {
 }
 
 /// A branch of a diagram, and its force over half the distance of the plates.
-pub(super) fn on_diagram(
+pub(super) fn on_diagram<P: BetweenPlates>(
     case: &ResolvedCase,
+    problem: &P,
     traced: &ContactBranch,
     stability: &Stability,
 ) -> (TraceResult, Curve) {
     let curve = force_over(traced, stability, &rows(traced), &|row| row.z0);
-    (result(case, traced, stability, 0.0), curve)
+    let resolution = resolved(problem, &traced.branch).record();
+    (TraceResult { resolution, ..result(case, traced, stability, 0.0) }, curve)
 }
 
 fn rows(traced: &ContactBranch) -> Vec<ContactRow> {
@@ -224,7 +254,7 @@ fn force_over(
 }
 
 fn pictures<P: BetweenPlates>(
-    case: &ResolvedCase,
+    title: String,
     problem: &P,
     traced: &ContactBranch,
     stability: &Stability,
@@ -263,7 +293,7 @@ fn pictures<P: BetweenPlates>(
     }
     let force = |x: &dyn Fn(&ContactRow) -> f64| force_over(traced, stability, &rows, x);
     Pictures {
-        title: case.name.clone(),
+        title,
         force_deformation: traced.zero_force.map(|_| force(&|row| row.deformation)),
         force_distance: Some(force(&|row| row.z0)),
         shapes,

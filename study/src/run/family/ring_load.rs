@@ -57,6 +57,7 @@ impl Family for RingLoadCase {
         Ok(result(case, diagram, seconds, ring_load::AXES, &mut |branch| {
             let curve = ring_load::curve(&branch);
             let mut result = ring_load::result(case, &branch, 0.0);
+            result.resolution = ring_load::resolved(self, &problem, &branch).record();
             if reported {
                 result.pictures.states = states::of_ring_load(&problem, &branch, points);
             }

@@ -127,7 +127,7 @@ impl WithPlates for OfTwoPlates<'_, '_> {
                 observer(DiagramProgress { branches: done, waiting, branch })
             });
             waves += stability.waves() + stability.missed();
-            let (trace, curve) = two_plates::on_diagram(case, &traced, &stability);
+            let (trace, curve) = two_plates::on_diagram(case, problem, &traced, &stability);
             Presented { trace, curve, stability }
         });
         with_asymmetric(&mut explored, asymmetric::Asymmetric::default(), waves);
