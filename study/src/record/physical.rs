@@ -1,0 +1,184 @@
+//! A branch in physical units: the same columns, beside the dimensionless ones, which stay as they are.
+
+use super::result::{Cell, Table};
+use crate::case::{ProblemCase, ResolvedCase};
+
+/// What one dimensionless unit of a shell is, in SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scales {
+    /// `R0` [m].
+    pub length: f64,
+    /// `sqrt(chi k_b)` [N].
+    pub force: f64,
+    /// `chi / R0` [Pa].
+    pub pressure: f64,
+    /// `chi R0²` [J].
+    pub energy: f64,
+    /// `w0 / delta_A` [Pa], the unit of the film's pressure.
+    pub film_pressure: f64,
+}
+
+impl Scales {
+    /// Those of a case; `None` for one that is not in physical units.
+    pub fn of(case: &ResolvedCase) -> Option<Scales> {
+        let ProblemCase::Contact(contact) = &case.problem else { return None };
+        let physical = contact.physical.as_ref()?;
+        let (radius, chi) = (physical.radius.si, physical.chi());
+        let bending = contact.groups.bending * chi * radius * radius;
+        Some(Scales {
+            length: radius,
+            force: (chi * bending).sqrt(),
+            pressure: chi / radius,
+            energy: chi * radius * radius,
+            film_pressure: physical.adhesion.si / physical.film.si,
+        })
+    }
+}
+
+/// A unit and its size in SI units.
+pub type Unit = (&'static str, f64);
+
+const LENGTHS: [Unit; 3] = [("nm", 1e-9), ("um", 1e-6), ("mm", 1e-3)];
+const FORCES: [Unit; 4] = [("pN", 1e-12), ("nN", 1e-9), ("uN", 1e-6), ("mN", 1e-3)];
+const PRESSURES: [Unit; 4] = [("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9)];
+const ENERGIES: [Unit; 4] = [("aJ", 1e-18), ("fJ", 1e-15), ("pJ", 1e-12), ("nJ", 1e-9)];
+const VOLUMES: [Unit; 3] = [("nm^3", 1e-27), ("um^3", 1e-18), ("mm^3", 1e-9)];
+
+/// A unit gives way to the next one where numbers reach this; lengths of shells stay in nanometres
+/// longer.
+const LARGE: f64 = 1e3;
+
+/// The units in which the numbers of a branch are easily read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PhysicalUnits {
+    /// Of distances.
+    pub length: Unit,
+    /// Of volumes.
+    pub volume: Unit,
+    /// Of forces.
+    pub force: Unit,
+    /// Of pressures.
+    pub pressure: Unit,
+    /// Of energies.
+    pub energy: Unit,
+    /// Of the film's pressure.
+    pub film_pressure: Unit,
+}
+
+impl PhysicalUnits {
+    /// The units for a branch: the largest number of each kind has one to three digits before the point.
+    pub fn for_table(scales: &Scales, table: &Table) -> PhysicalUnits {
+        let largest = |unit: &str| {
+            let of_unit = table.columns().iter().filter(|name| table.unit(name) == unit);
+            of_unit
+                .flat_map(|name| table.numbers(name))
+                .filter(|value| value.is_finite())
+                .fold(0.0_f64, |largest, value| largest.max(value.abs()))
+        };
+        PhysicalUnits {
+            // a shell of some micrometres is pressed by nanometres
+            length: choose(&LENGTHS, scales.length * largest("R0") / 100.0),
+            volume: choose(&VOLUMES, scales.length.powi(3) * largest("R0^3")),
+            force: choose(&FORCES, scales.force * largest("sqrt(chi k_b)")),
+            pressure: choose(&PRESSURES, scales.pressure * largest("chi/R0")),
+            energy: choose(&ENERGIES, scales.energy * largest("chi R0^2")),
+            film_pressure: choose(&PRESSURES, scales.film_pressure),
+        }
+    }
+
+    /// The physical unit of what has this dimensionless one, and what a number must be multiplied with.
+    pub fn of(&self, scales: &Scales, unit: &str) -> Option<(&'static str, f64)> {
+        let ((name, size), scale) = match unit {
+            "R0" => (self.length, scales.length),
+            "R0^3" => (self.volume, scales.length.powi(3)),
+            "sqrt(chi k_b)" => (self.force, scales.force),
+            "chi/R0" => (self.pressure, scales.pressure),
+            "chi R0^2" => (self.energy, scales.energy),
+            "w0/delta_A" => (self.film_pressure, scales.film_pressure),
+            _ => return None,
+        };
+        Some((name, scale / size))
+    }
+}
+
+fn choose(units: &[Unit], largest: f64) -> Unit {
+    let fits = |unit: &&Unit| largest < LARGE * unit.1;
+    let last = units.last().copied().unwrap_or(("", 1.0));
+    units.iter().find(fits).copied().unwrap_or(last)
+}
+
+/// The table in physical units: `point`, then every column that has a unit, with its new unit at the end
+/// of its name (`z0_nm`, `force_nN`), then `event`. `None` for a case that is not in physical units.
+pub fn physical_table(case: &ResolvedCase, table: &Table) -> Option<Table> {
+    let scales = Scales::of(case)?;
+    let units = PhysicalUnits::for_table(&scales, table);
+    let convertible = |name: &&String| units.of(&scales, table.unit(name)).is_some();
+    let names: Vec<&String> = table.columns().iter().filter(convertible).collect();
+    let mut titles = vec!["point".to_owned()];
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    for name in names {
+        let Some((unit, factor)) = units.of(&scales, table.unit(name)) else { continue };
+        titles.push(format!("{name}_{}", unit.replace('^', "")));
+        columns.push(table.numbers(name).into_iter().map(|value| factor * value).collect());
+    }
+    titles.push("event".to_owned());
+    let titles: Vec<&str> = titles.iter().map(String::as_str).collect();
+    let mut out = Table::with_columns(&titles);
+    let events: std::collections::BTreeMap<usize, &str> = table.words("event").collect();
+    for row in 0..table.rows().len() {
+        let mut cells: Vec<Cell> = vec![row.into()];
+        cells.extend(columns.iter().map(|values| Cell::Real(values[row])));
+        cells.push(events.get(&row).copied().unwrap_or("").into());
+        out.push(cells);
+    }
+    Some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::load;
+    use crate::record::ContactRow;
+
+    /// The polymer-coated shell that is shipped: `R0` = 1.5 um, `chi` = 52.5 N/m.
+    fn polymer() -> ResolvedCase {
+        load("polymer".as_ref(), &[], &[]).unwrap().case
+    }
+
+    #[test]
+    fn numbers_are_those_of_the_laboratory() {
+        let mut table = Table::contact();
+        let row = ContactRow { z0: 0.9, force: 2.0, gas_pressure: 3e-3, ..ContactRow::default() };
+        table.push(row.cells());
+        let physical = physical_table(&polymer(), &table).unwrap();
+        let of = |name: &str| physical.numbers(name)[0];
+        assert!((of("z0_nm") - 1350.0).abs() < 1e-9);
+        // E h³/(12 (1 − nu²)) = 2.1e9 · 1.5625e-23/9
+        let bending = 2.1e9 * 1.5625e-23 / 9.0;
+        let force = 2.0 * f64::sqrt(52.5 * bending);
+        assert!((of("force_nN") / (force * 1e9) - 1.0).abs() < 1e-12, "{}", of("force_nN"));
+        assert!((of("gas_pressure_kPa") - 105.0).abs() < 1e-9);
+        assert!(physical.columns().contains(&"energy_total_aJ".to_owned()));
+        assert_eq!(physical.columns().last().map(String::as_str), Some("event"));
+        assert!(!physical.columns().iter().any(|name| name.starts_with("unstable")));
+    }
+
+    #[test]
+    fn a_dimensionless_case_has_no_such_table() {
+        let case = load("fig12".as_ref(), &[], &[]).unwrap().case;
+        assert_eq!(physical_table(&case, &Table::contact()), None);
+    }
+
+    #[test]
+    fn units_go_with_the_size_of_the_numbers() {
+        let scales = Scales::of(&polymer()).unwrap();
+        let unit = |force: f64| {
+            let mut table = Table::contact();
+            table.push(ContactRow { force, ..ContactRow::default() }.cells());
+            PhysicalUnits::for_table(&scales, &table).force.0
+        };
+        assert_eq!([1e-9, 1e-3, 1.0, 100.0].map(unit), ["pN", "pN", "nN", "uN"]);
+        // nothing is drawn of what is not finite
+        assert_eq!(unit(f64::NAN), "pN");
+    }
+}
