@@ -35,6 +35,8 @@ pub(crate) enum Command {
     /// Follow special points in two parameters; write the curves, the special points on them and a
     /// picture
     Map(MapArguments),
+    /// Open a page on which sliders move the parameters of a case and its branch follows
+    Explore(ExploreArguments),
     /// Fit measured force curves: moduli, thickness, adhesion, contact point, and how well they are known
     Fit(FitArguments),
     /// Compute figures of the reference paper, and compare its claims with them
@@ -98,6 +100,29 @@ impl CaseArguments {
             own.into_iter().filter_map(|(flag, key, value)| short(flag, key, value.as_deref()));
         set(&self.set).chain(own).collect()
     }
+
+    /// The words that give the same case on a command line.
+    pub(crate) fn words(&self) -> Vec<String> {
+        let own = [("--elements", &self.elements), ("--eigenvalues", &self.eigenvalues)];
+        let own = own.into_iter().filter_map(|(flag, value)| Some((flag, value.clone()?)));
+        let sets = self.set.iter().map(|text| ("--set", text.clone()));
+        let options = sets.chain(own).flat_map(|(flag, value)| [flag.to_owned(), value]);
+        std::iter::once(self.case.to_string_lossy().into_owned()).chain(options).collect()
+    }
+}
+
+/// Which case, and how its page is served.
+#[derive(Debug, Args)]
+pub(crate) struct ExploreArguments {
+    /// Which case.
+    #[command(flatten)]
+    pub(crate) case: CaseArguments,
+    /// Port of the loopback interface [default: any that is free]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) port: u16,
+    /// Print the page's address only, and open no browser
+    #[arg(long)]
+    pub(crate) no_open: bool,
 }
 
 /// Which case, and what to do with its branch.

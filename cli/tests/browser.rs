@@ -1,4 +1,4 @@
-//! Reports in a real browser, by `tests/browser`; where there is none, this says so and passes.
+//! Reports and the live page in a real browser, by `tests/browser`; where there is none, this says so and passes.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 #![allow(clippy::print_stderr, reason = "a test that does not run says so")]
 
@@ -56,6 +56,16 @@ fn a_report_is_written_where_it_is_asked_for() {
 
 #[test]
 fn reports_work_in_a_browser() {
+    in_a_browser("report.test.js");
+}
+
+#[test]
+fn the_live_page_works_in_a_browser() {
+    in_a_browser("explore.test.js");
+}
+
+/// Runs a file of tests; where there is no browser, says so.
+fn in_a_browser(file: &str) {
     let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/browser");
     let (node, browser) = match tools(&tests) {
         Ok(tools) => tools,
@@ -66,7 +76,7 @@ fn reports_work_in_a_browser() {
         }
     };
     let output = Command::new(node)
-        .args(["--test", "report.test.js"])
+        .args(["--test", file])
         .current_dir(&tests)
         .env("ARCLEN", env!("CARGO_BIN_EXE_arclen"))
         .env("BROWSER", browser)

@@ -1,11 +1,12 @@
-//! One chart: axes, lines, markers, and a legend beside them that covers nothing.
+//! One chart: axes, lines, markers with their names, and a legend beside them that covers nothing.
 
 use super::axis::Axis;
-use super::palette::{FAINT, Form, GRID, form};
-use plotters::coord::types::RangedCoordf64;
-use plotters::element::DashedPathElement;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use super::label::{self, Names};
+use super::palette::{Color, FAINT, Form, GRID, form, hex};
+use super::path::{self, Place};
+use super::sheet::FAMILY;
+use super::text::{self, Style};
+use std::fmt::Write as _;
 use study::record::view::{Mark, Stability, drawable};
 
 /// Why a picture could not be drawn.
@@ -14,7 +15,7 @@ use study::record::view::{Mark, Stability, drawable};
 pub struct DrawError {
     /// Which picture.
     pub picture: String,
-    /// What the drawing library says.
+    /// What is missing.
     pub detail: String,
 }
 
@@ -39,12 +40,12 @@ impl Stroke {
         }
     }
 
-    /// Lengths of a dash and of the gap after it.
-    fn pattern(self) -> Option<(i32, i32)> {
+    /// Lengths of a dash and of the gap after it, as an attribute.
+    fn pattern(self) -> &'static str {
         match self {
-            Stroke::Solid => None,
-            Stroke::Dashed => Some((7 * PX, 5 * PX)),
-            Stroke::Dotted => Some((2 * PX, 3 * PX)),
+            Stroke::Solid => "",
+            Stroke::Dashed => " stroke-dasharray=\"7 5\"",
+            Stroke::Dotted => " stroke-dasharray=\"2 3\"",
         }
     }
 }
@@ -55,7 +56,7 @@ pub(super) struct Line {
     /// The points, all drawable.
     pub(super) points: Vec<(f64, f64)>,
     /// Its colour.
-    pub(super) color: RGBColor,
+    pub(super) color: Color,
     /// Its width in pixels.
     pub(super) width: u32,
     /// Solid or not.
@@ -70,7 +71,7 @@ pub(super) struct Tile {
     /// The opposite one.
     pub(super) to: (f64, f64),
     /// Its colour.
-    pub(super) color: RGBColor,
+    pub(super) color: Color,
 }
 
 /// A line of the legend.
@@ -79,7 +80,7 @@ pub(super) enum Entry {
     /// A sample of a line.
     Line {
         /// Its colour.
-        color: RGBColor,
+        color: Color,
         /// Solid or not.
         stroke: Stroke,
         /// What it stands for.
@@ -88,7 +89,7 @@ pub(super) enum Entry {
     /// A sample of a tile.
     Tile {
         /// Its colour.
-        color: RGBColor,
+        color: Color,
         /// What it stands for.
         label: String,
     },
@@ -104,10 +105,24 @@ pub(super) enum Entry {
     },
 }
 
+impl Entry {
+    fn label(&self) -> String {
+        match self {
+            Entry::Line { label, .. } | Entry::Tile { label, .. } | Entry::Note { label } => {
+                label.clone()
+            }
+            Entry::Marker { kind } => match label::letters(kind) {
+                "" => kind.clone(),
+                letters => format!("{kind} ({letters})"),
+            },
+        }
+    }
+}
+
 /// Everything on a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Chart {
-    /// Title; empty for none.
+    /// Title; empty for none. What follows a line break is written small below it.
     pub(super) title: String,
     /// Horizontal axis.
     pub(super) x: Axis,
@@ -123,30 +138,34 @@ pub(super) struct Chart {
     pub(super) size: (u32, u32),
 }
 
-/// Units of drawing per pixel. The library rounds to whole units; ten to a pixel keep curves
-/// smooth.
-const PX: i32 = 10;
-const BOTTOM: i32 = 58 * PX;
-const RIGHT: i32 = 18 * PX;
-const TOP: i32 = 18 * PX;
-const TITLE: i32 = 30 * PX;
-const ROW: i32 = 24 * PX;
-/// Width of a digit in the labels of ticks.
-const DIGIT: i32 = 9 * PX;
-const FONT: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
-const INK: RGBColor = RGBColor(30, 30, 30);
+const BOTTOM: f64 = 58.0;
+const RIGHT: f64 = 18.0;
+const TOP: f64 = 18.0;
+const TITLE: f64 = 30.0;
+const SUBTITLE: f64 = 20.0;
+const ROW: f64 = 24.0;
+/// Sizes of letters: title, axes, ticks and legend, names of special points.
+const LETTERS: [f64; 4] = [18.0, 16.0, 14.0, 13.0];
+const INK: &str = "#1e1e1e";
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
-type Plot<'a> = DrawingArea<SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-type Outcome = Result<(), Box<dyn std::error::Error>>;
-
-/// The plotting area, in units of drawing.
+/// The plotting area in pixels, and where numbers are in it.
 #[derive(Clone, Copy)]
-struct Frame {
-    left: i32,
-    top: i32,
-    right: i32,
-    bottom: i32,
+pub(super) struct Frame {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) right: f64,
+    pub(super) bottom: f64,
+    x: (f64, f64),
+    y: (f64, f64),
+}
+
+impl Frame {
+    /// The place of a point in the units of the axes' labels.
+    fn place(&self, (x, y): (f64, f64)) -> Place {
+        let across = (x - self.x.0) / (self.x.1 - self.x.0);
+        let up = (y - self.y.0) / (self.y.1 - self.y.0);
+        (self.left + across * (self.right - self.left), self.bottom - up * (self.bottom - self.top))
+    }
 }
 
 impl Chart {
@@ -158,197 +177,203 @@ impl Chart {
     /// The chart as SVG, on top of tiles.
     pub(super) fn svg_over(&self, tiles: &[Tile]) -> Result<String, DrawError> {
         let frame = self.frame();
-        let rows = 20 * PX + ROW * self.legend.len() as i32;
-        let width = (frame.right + RIGHT + self.legend_width()) as u32;
-        let height = (frame.bottom + BOTTOM).max(frame.top + rows) as u32;
-        let mut svg = String::new();
-        let outcome = {
-            let root = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
-            self.draw(&root, frame, tiles).and_then(|()| Ok(root.present()?))
-        };
-        outcome.map_err(|error| DrawError {
-            picture: self.y.title.clone(),
-            detail: error.to_string(),
-        })?;
-        let px = PX as u32;
-        let (fine, real) = (
-            format!("width=\"{width}\" height=\"{height}\""),
-            format!("width=\"{}\" height=\"{}\"", width / px, height / px),
+        let rows = 20.0 + ROW * self.legend.len() as f64;
+        let heading = self.heading().into_iter().zip([LETTERS[0], LETTERS[3]]);
+        let heading = heading.map(|(line, size)| text::width(line, size)).fold(0.0, f64::max);
+        let width = (frame.right + RIGHT + self.legend_width()).max(frame.left + heading + RIGHT);
+        let height = (frame.bottom + BOTTOM).max(frame.top + rows);
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
+             viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"{FAMILY}\" fill=\"none\" \
+             stroke-linejoin=\"round\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
         );
-        Ok(svg.replacen(&fine, &format!("{real} stroke-linejoin=\"round\""), 1))
+        for tile in tiles {
+            let ((a, b), (c, d)) = (frame.place(tile.from), frame.place(tile.to));
+            rectangle(&mut svg, [a.min(c), b.min(d), (c - a).abs(), (d - b).abs()], tile.color);
+        }
+        self.axes(&mut svg, frame);
+        let [left, top, right, bottom] = [frame.left, frame.top, frame.right, frame.bottom];
+        let _ = writeln!(
+            svg,
+            "<clipPath id=\"frame\"><rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" \
+             height=\"{:.1}\"/></clipPath>\n<g clip-path=\"url(#frame)\">",
+            right - left,
+            bottom - top
+        );
+        for line in &self.lines {
+            let places: Vec<Place> = line.points.iter().map(|point| frame.place(*point)).collect();
+            draw_line(&mut svg, line, &places);
+        }
+        svg.push_str("</g>\n");
+        self.special_points(&mut svg, frame);
+        self.draw_legend(&mut svg, frame.right + RIGHT, frame.top + 12.0);
+        svg.push_str("</svg>\n");
+        Ok(svg)
+    }
+
+    /// Title and the line below it.
+    fn heading(&self) -> [&str; 2] {
+        let (title, more) = self.title.split_once('\n').unwrap_or((&self.title, ""));
+        [title, more]
     }
 
     /// The plotting area: to the right of the widest label.
     fn frame(&self) -> Frame {
-        let digits = self.y.ticks.iter().map(|tick| self.y.label(*tick).chars().count());
-        let left = 46 * PX + DIGIT * digits.max().unwrap_or(0) as i32;
-        let top = TOP + if self.title.is_empty() { 0 } else { TITLE };
-        let (width, height) = (self.size.0 as i32 * PX, self.size.1 as i32 * PX);
-        Frame { left, top, right: left + width, bottom: top + height }
+        let labels = self.y.ticks.iter().map(|tick| text::width(&self.y.label(*tick), LETTERS[2]));
+        let left = (50.0 + labels.fold(0.0, f64::max)).ceil();
+        let [title, more] = self.heading();
+        let above = if title.is_empty() { 0.0 } else { TITLE };
+        let top = TOP + above + if more.is_empty() { 0.0 } else { SUBTITLE };
+        let (width, height) = (f64::from(self.size.0), f64::from(self.size.1));
+        let (right, bottom) = (left + width, top + height);
+        let (x, y) = ((self.x.low, self.x.high), (self.y.low, self.y.high));
+        Frame { left, top, right, bottom, x, y }
     }
 
-    fn legend_width(&self) -> i32 {
-        let longest = self.legend.iter().map(|entry| match entry {
-            Entry::Line { label, .. } | Entry::Tile { label, .. } => label.chars().count(),
-            Entry::Marker { kind } => kind.chars().count(),
-            Entry::Note { label } => label.chars().count(),
-        });
-        longest.max().map_or(0, |chars| 62 * PX + 8 * PX * chars as i32)
-    }
-
-    fn draw(&self, root: &Area<'_>, frame: Frame, tiles: &[Tile]) -> Outcome {
-        root.fill(&WHITE)?;
-        if !self.title.is_empty() {
-            let style = text(19).pos(Pos::new(HPos::Left, VPos::Center));
-            let at = (frame.left, frame.top - 18 * PX);
-            root.draw(&Text::new(self.title.clone(), at, style))?;
-        }
-        let plot =
-            root.clone().apply_coord_spec(Cartesian2d::<RangedCoordf64, RangedCoordf64>::new(
-                self.x.low..self.x.high,
-                self.y.low..self.y.high,
-                (frame.left..frame.right, frame.bottom..frame.top),
-            ));
-        for Tile { from, to, color } in tiles {
-            plot.draw(&Rectangle::new([*from, *to], color.filled()))?;
-        }
-        self.axes(root, &plot, frame)?;
-        for line in &self.lines {
-            draw_line(&plot, line)?;
-        }
-        for mark in self.marks.iter().filter(|mark| drawable(mark.x) && drawable(mark.y)) {
-            let at = plot.map_coordinate(&(mark.x / self.x.unit, mark.y / self.y.unit));
-            draw_marker(root, form(&mark.kind), at)?;
-        }
-        self.draw_legend(root, frame.right + RIGHT, frame.top + 12 * PX)
+    fn legend_width(&self) -> f64 {
+        let longest = self.legend.iter().map(|entry| text::width(&entry.label(), LETTERS[2]));
+        longest.fold(0.0, f64::max) + if self.legend.is_empty() { 0.0 } else { 58.0 }
     }
 
     /// Grid, frame, ticks, labels and titles.
-    fn axes(&self, root: &Area<'_>, plot: &Plot<'_>, frame: Frame) -> Outcome {
+    fn axes(&self, svg: &mut String, frame: Frame) {
         let (x, y) = (&self.x, &self.y);
-        let Frame { left, top, right, bottom } = frame;
-        let line = |from, to, color: RGBColor| {
-            root.draw(&PathElement::new([from, to], color.stroke_width(PX as u32)))
-        };
+        let Frame { left, top, right, bottom, .. } = frame;
+        let ticks = Style::small().sized(LETTERS[2]);
+        let (mut grid, mut marks) = (String::new(), String::new());
         for &tick in &x.ticks {
-            let at = plot.map_coordinate(&(tick, y.low)).0;
-            line((at, top), (at, bottom), GRID)?;
-            line((at, bottom), (at, bottom + 6 * PX), INK)?;
-            let style = text(15).pos(Pos::new(HPos::Center, VPos::Top));
-            root.draw(&Text::new(x.label(tick), (at, bottom + 10 * PX), style))?;
+            let at = frame.place((tick, y.low)).0;
+            let _ = write!(grid, "M{at:.1} {top:.1}V{bottom:.1}");
+            let _ = write!(marks, "M{at:.1} {bottom:.1}v6");
         }
         for &tick in &y.ticks {
-            let at = plot.map_coordinate(&(x.low, tick)).1;
-            line((left, at), (right, at), GRID)?;
-            line((left - 6 * PX, at), (left, at), INK)?;
-            let style = text(15).pos(Pos::new(HPos::Right, VPos::Center));
-            root.draw(&Text::new(y.label(tick), (left - 10 * PX, at), style))?;
+            let at = frame.place((x.low, tick)).1;
+            let _ = write!(grid, "M{left:.1} {at:.1}H{right:.1}");
+            let _ = write!(marks, "M{left:.1} {at:.1}h-6");
         }
+        let _ = writeln!(svg, "<path d=\"{grid}\" stroke=\"{}\"/>", hex(GRID));
         if y.has_zero() {
-            let at = plot.map_coordinate(&(x.low, 0.0)).1;
-            line((left, at), (right, at), FAINT)?;
+            let at = frame.place((x.low, 0.0)).1;
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{left:.1} {at:.1}H{right:.1}\" stroke=\"{}\"/>",
+                hex(FAINT)
+            );
         }
-        // as a path: the library draws rectangles with thin lines only
-        let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
-        let around = [0, 1, 2, 3, 0, 1].map(|at| corners[at]);
-        root.draw(&PathElement::new(around, INK.stroke_width(PX as u32)))?;
-        let style = text(17).pos(Pos::new(HPos::Center, VPos::Bottom));
-        let middle = ((left + right) / 2, bottom + BOTTOM - 8 * PX);
-        root.draw(&Text::new(x.title.clone(), middle, style))?;
-        let style =
-            text(17).transform(FontTransform::Rotate270).pos(Pos::new(HPos::Center, VPos::Top));
-        root.draw(&Text::new(y.title.clone(), (10 * PX, (top + bottom) / 2), style))?;
-        Ok(())
+        let _ = writeln!(
+            svg,
+            "<path d=\"{marks}M{left:.1} {top:.1}H{right:.1}V{bottom:.1}H{left:.1}Z\" stroke=\"{INK}\"/>"
+        );
+        for &tick in &x.ticks {
+            let at = [frame.place((tick, y.low)).0, bottom + 21.0];
+            text::put(svg, &x.label(tick), at, &ticks.anchored("middle"));
+        }
+        for &tick in &y.ticks {
+            let at = [left - 10.0, frame.place((x.low, tick)).1 + 5.0];
+            text::put(svg, &y.label(tick), at, &ticks.anchored("end"));
+        }
+        let titles = Style::small().sized(LETTERS[1]).anchored("middle");
+        text::put(svg, &x.title, [0.5 * (left + right), bottom + BOTTOM - 12.0], &titles);
+        text::put(svg, &y.title, [22.0, 0.5 * (top + bottom)], &titles.upwards());
+        let [title, more] = self.heading();
+        let above = if more.is_empty() { 0.0 } else { SUBTITLE };
+        text::put(svg, title, [left, top - 12.0 - above], &Style::title().sized(LETTERS[0]));
+        text::put(svg, more, [left, top - 11.0], &Style::small().sized(LETTERS[3]));
     }
 
-    fn draw_legend(&self, root: &Area<'_>, left: i32, top: i32) -> Outcome {
-        for (row, entry) in self.legend.iter().enumerate() {
-            let y = top + ROW * row as i32;
-            let label = match entry {
-                Entry::Line { color, stroke, label } => {
-                    let points = [(left, y), (left + 34 * PX, y)];
-                    let style = color.stroke_width(2 * PX as u32);
-                    match stroke.pattern() {
-                        Some((dash, gap)) => {
-                            root.draw(&DashedPathElement::new(points, dash, gap, style))?;
-                        }
-                        None => root.draw(&PathElement::new(points, style))?,
-                    }
-                    label
-                }
-                Entry::Tile { color, label } => {
-                    let corners = [(left + 6 * PX, y - 8 * PX), (left + 28 * PX, y + 8 * PX)];
-                    root.draw(&Rectangle::new(corners, color.filled()))?;
-                    label
-                }
-                Entry::Marker { kind } => {
-                    draw_marker(root, form(kind), (left + 17 * PX, y))?;
-                    kind
-                }
-                Entry::Note { label } => label,
-            };
-            let style = text(15).pos(Pos::new(HPos::Left, VPos::Center));
-            root.draw(&Text::new(label.clone(), (left + 44 * PX, y), style))?;
+    /// Markers, the more important ones on top, and their names where there is room.
+    fn special_points(&self, svg: &mut String, frame: Frame) {
+        let mut marks: Vec<(&Mark, Place)> = Vec::new();
+        for mark in self.marks.iter().filter(|mark| drawable(mark.x) && drawable(mark.y)) {
+            marks.push((mark, frame.place((mark.x / self.x.unit, mark.y / self.y.unit))));
         }
-        Ok(())
+        let lines: Vec<Vec<Place>> = self
+            .lines
+            .iter()
+            .map(|line| line.points.iter().map(|point| frame.place(*point)).collect())
+            .collect();
+        let names = Names::beside(&marks, &lines, frame, LETTERS[3]);
+        marks.sort_by_key(|(mark, _)| label::rank(&mark.kind));
+        for (mark, place) in &marks {
+            draw_marker(svg, form(&mark.kind), *place);
+        }
+        names.draw(svg);
+    }
+
+    fn draw_legend(&self, svg: &mut String, left: f64, top: f64) {
+        for (row, entry) in self.legend.iter().enumerate() {
+            let y = top + ROW * row as f64;
+            match entry {
+                Entry::Line { color, stroke, .. } => {
+                    let line =
+                        Line { points: Vec::new(), color: *color, width: 2, stroke: *stroke };
+                    draw_line(svg, &line, &[(left, y), (left + 34.0, y)]);
+                }
+                Entry::Tile { color, .. } => {
+                    rectangle(svg, [left + 6.0, y - 8.0, 22.0, 16.0], *color);
+                }
+                Entry::Marker { kind } => draw_marker(svg, form(kind), (left + 17.0, y)),
+                Entry::Note { .. } => {}
+            }
+            let style = Style::small().sized(LETTERS[2]);
+            text::put(svg, &entry.label(), [left + 44.0, y + 5.0], &style);
+        }
     }
 }
 
-fn text(size: i32) -> TextStyle<'static> {
-    TextStyle::from((FONT, size * PX).into_font()).color(&INK)
+fn rectangle(svg: &mut String, [x, y, width, height]: [f64; 4], color: Color) {
+    let _ = writeln!(
+        svg,
+        "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{}\" \
+         shape-rendering=\"crispEdges\"/>",
+        hex(color)
+    );
 }
 
 /// A line, or a dot where a line has one point only.
-fn draw_line(plot: &Plot<'_>, line: &Line) -> Outcome {
-    let style = line.color.stroke_width(line.width * PX as u32);
-    match line.points.as_slice() {
+fn draw_line(svg: &mut String, line: &Line, places: &[Place]) {
+    let color = hex(line.color);
+    match places {
         [] => {}
-        [point] => plot.draw(&Circle::new(*point, 3 * PX, line.color.filled()))?,
-        points => match line.stroke.pattern() {
-            Some((dash, gap)) => {
-                plot.draw(&DashedPathElement::new(points.iter().copied(), dash, gap, style))?;
-            }
-            None => plot.draw(&PathElement::new(points.to_vec(), style))?,
-        },
+        [(x, y)] => {
+            let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\" fill=\"{color}\"/>");
+        }
+        places => {
+            let _ = writeln!(
+                svg,
+                "<path d=\"{}\" stroke=\"{color}\" stroke-width=\"{}\"{}/>",
+                path::through(places),
+                line.width,
+                line.stroke.pattern()
+            );
+        }
     }
-    Ok(())
 }
 
 /// A marker: black with a white rim, so that it stands out from its curve.
-fn draw_marker(root: &Area<'_>, form: Form, (x, y): (i32, i32)) -> Outcome {
-    let polygon = |corners: &[(i32, i32)], fill: RGBColor| -> Outcome {
-        let corners: Vec<(i32, i32)> =
-            corners.iter().map(|(a, b)| (x + a * PX, y + b * PX)).collect();
-        let mut rim = corners.clone();
-        rim.extend(corners.iter().take(2).copied());
-        root.draw(&Polygon::new(corners, fill.filled()))?;
-        let edge = if fill == INK { WHITE } else { INK };
-        Ok(root.draw(&PathElement::new(rim, edge.stroke_width(PX as u32)))?)
-    };
-    let diamond = [(0, -8), (7, 0), (0, 8), (-7, 0)];
-    match form {
-        Form::Disc => {
-            root.draw(&Circle::new((x, y), 6 * PX, WHITE.filled()))?;
-            Ok(root.draw(&Circle::new((x, y), 5 * PX, INK.filled()))?)
-        }
-        Form::Ring => {
-            root.draw(&Circle::new((x, y), 6 * PX, WHITE.filled()))?;
-            Ok(root.draw(&Circle::new((x, y), 5 * PX, INK.stroke_width(2 * PX as u32)))?)
-        }
-        Form::Square => polygon(&[(-6, -6), (6, -6), (6, 6), (-6, 6)], INK),
-        Form::Up => polygon(&[(0, -8), (7, 5), (-7, 5)], INK),
-        Form::Down => polygon(&[(0, 8), (7, -5), (-7, -5)], INK),
-        Form::Diamond => polygon(&diamond, INK),
-        Form::HollowDiamond => polygon(&diamond, WHITE),
+fn draw_marker(svg: &mut String, form: Form, (x, y): Place) {
+    let (d, filled) = match form {
+        Form::Disc => ("M5 0A5 5 0 1 1-5 0A5 5 0 1 1 5 0Z", true),
+        Form::Ring => ("M5 0A5 5 0 1 1-5 0A5 5 0 1 1 5 0Z", false),
+        Form::Square => ("M-5-5H5V5H-5Z", true),
+        Form::Up => ("M0-7L6 5H-6Z", true),
+        Form::Down => ("M0 7L6-5H-6Z", true),
+        Form::Diamond => ("M0-7L6 0L0 7L-6 0Z", true),
+        Form::HollowDiamond => ("M0-7L6 0L0 7L-6 0Z", false),
         Form::Cross => {
-            for (color, width) in [(WHITE, 4), (INK, 2)] {
-                for sign in [-1, 1] {
-                    let (a, b) = (5 * PX, 5 * PX * sign);
-                    let ends = [(x - a, y - b), (x + a, y + b)];
-                    root.draw(&PathElement::new(ends, color.stroke_width(width * PX as u32)))?;
-                }
-            }
-            Ok(())
+            let _ = writeln!(
+                svg,
+                "<g transform=\"translate({x:.1} {y:.1})\"><path d=\"M-5-5L5 5M5-5L-5 5\" \
+                 stroke=\"#ffffff\" stroke-width=\"4\"/><path d=\"M-5-5L5 5M5-5L-5 5\" stroke=\"{INK}\" \
+                 stroke-width=\"2\"/></g>"
+            );
+            return;
         }
-    }
+    };
+    let (fill, edge, width) = if filled { (INK, "#ffffff", 1.2) } else { ("#ffffff", INK, 1.8) };
+    let _ = writeln!(
+        svg,
+        "<path d=\"{d}\" transform=\"translate({x:.1} {y:.1})\" fill=\"{fill}\" stroke=\"{edge}\" \
+         stroke-width=\"{width}\"/>"
+    );
 }

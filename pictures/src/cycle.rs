@@ -3,8 +3,8 @@
 use super::axis::Axis;
 use super::chart::{Chart, DrawError, Entry, Line, Stroke};
 use super::draw::{DISTANCE, FORCE, WIDE, curve_lines, shapes, unstable_entries, values};
+use super::heading::fit;
 use super::palette::{Color, FAINT, of_state};
-use study::case::shown;
 use study::record::view::{Curve, CyclePictures, drawable};
 
 /// Name of the picture of the loop.
@@ -93,7 +93,7 @@ fn hysteresis(cycle: &CyclePictures) -> Result<String, DrawError> {
     if !marks.is_empty() {
         legend.push(Entry::Marker { kind: "fold".to_owned() });
     }
-    Chart { title: shown(&cycle.title), x, y, lines, marks, legend, size: WIDE }.svg()
+    Chart { title: fit(&cycle.title), x, y, lines, marks, legend, size: WIDE }.svg()
 }
 
 /// How far along a curve its arrow is: apart from that of the way back.

@@ -2,11 +2,12 @@
 
 use super::axis::Axis;
 use super::chart::{Chart, DrawError, Entry, Line, Stroke};
-use super::palette::{Color, FAINT, of_quantity, of_state};
+use super::heading::fit;
+use super::palette::{ASYMMETRIC, Color, FAINT, UNSTABLE, of_quantity, of_state};
 use study::case::shown;
 use study::record::view::{Curve, Examined, Mark, Profile, Shape, Stability, drawable};
 
-pub(super) const FORCE: &str = "force F/√(χ k_b)";
+pub(super) const FORCE: &str = "force F/√(χk_{b})";
 pub(super) const DISTANCE: &str = "plate distance z₀/R₀";
 const DEFORMATION: &str = "deformation Δ/R₀";
 pub(super) const WIDE: (u32, u32) = (620, 440);
@@ -73,15 +74,16 @@ pub(super) fn branches(
             entries.push(Entry::Line { color, stroke: Stroke::Solid, label });
         }
     }
+    lines.sort_by_key(|line| line.stroke != Stroke::Solid);
     entries.extend(stability_entries(&all, FAINT));
     entries.extend(markers);
-    Chart { title: shown(title), x, y, lines, marks, legend: entries, size: WIDE }.svg()
+    Chart { title: fit(title), x, y, lines, marks, legend: entries, size: WIDE }.svg()
 }
 
 /// Disjoining pressure against distance from the axis.
 pub(super) fn film_pressure(title: &str, profiles: &[Profile]) -> Result<String, DrawError> {
     let x = Axis::of("distance from the axis σ/R₀", values(profiles, |p| &p.sigma), 7);
-    let y = Axis::of("disjoining pressure Π δ_A/w₀", values(profiles, |p| &p.value), 7);
+    let y = Axis::of("disjoining pressure Π δ_{A}/w₀", values(profiles, |p| &p.value), 7);
     let mut lines = Vec::new();
     let mut legend = Vec::new();
     for (at, profile) in profiles.iter().enumerate() {
@@ -93,7 +95,7 @@ pub(super) fn film_pressure(title: &str, profiles: &[Profile]) -> Result<String,
         lines.extend(curve_lines(&curve, of_state(at), (x.unit, y.unit)));
         legend.push(state_entry(at, &profile.label, profile.stability));
     }
-    let title = shown(title);
+    let title = fit(title);
     Chart { title, x, y, lines, marks: Vec::new(), legend, size: WIDE }.svg()
 }
 
@@ -145,7 +147,7 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
     let label = "at rest, without plates".to_string();
     legend.push(Entry::Line { color: FAINT, stroke: Stroke::Dashed, label });
     let size = (width as u32, height as u32);
-    Chart { title: shown(title), x, y, lines, marks: Vec::new(), legend, size }.svg()
+    Chart { title: fit(title), x, y, lines, marks: Vec::new(), legend, size }.svg()
 }
 
 /// Curves of special points in two parameters.
@@ -155,13 +157,18 @@ pub(super) fn map(title: &str, x: &str, y: &str, curves: &[Curve]) -> Result<Str
 
 /// A chart of curves along a branch, with their special points.
 fn chart(title: &str, x: &str, y: &str, curves: &[Curve]) -> Chart {
-    let marks: Vec<Mark> = curves.iter().flat_map(|curve| curve.marks.clone()).collect();
+    let marks = once(curves.iter().flat_map(|curve| curve.marks.clone()));
     let x = Axis::of(&shown(x), values(curves, |c| &c.x).chain(marks.iter().map(|m| m.x)), 7);
     let y = Axis::of(&shown(y), values(curves, |c| &c.y).chain(marks.iter().map(|m| m.y)), 7);
-    let lines = curves
+    let mut lines: Vec<Line> = curves
         .iter()
         .flat_map(|curve| curve_lines(curve, of_quantity(&curve.label), (x.unit, y.unit)))
         .collect();
+    // what is unstable may run along what is stable
+    lines.sort_by_key(|line| line.stroke != Stroke::Solid);
+    if curves.len() == 1 {
+        lines.iter_mut().for_each(|line| line.color = color_alone(line.stroke, line.color));
+    }
     let mut legend: Vec<Entry> = Vec::new();
     let unstable = curves.iter().any(Curve::has_unstable);
     if let [curve] = curves {
@@ -186,7 +193,30 @@ fn chart(title: &str, x: &str, y: &str, curves: &[Curve]) -> Chart {
         }
     }
     legend.extend(kinds.into_iter().map(|kind| Entry::Marker { kind }));
-    Chart { title: shown(title), x, y, lines, marks, legend, size: WIDE }
+    Chart { title: fit(title), x, y, lines, marks, legend, size: WIDE }
+}
+
+/// Special points, each once: branches of a diagram share those at which they meet.
+fn once(marks: impl Iterator<Item = Mark>) -> Vec<Mark> {
+    let mut all: Vec<Mark> = Vec::new();
+    for mark in marks {
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-7 * a.abs().max(b.abs());
+        let known =
+            |own: &Mark| own.kind == mark.kind && near(own.x, mark.x) && near(own.y, mark.y);
+        if !all.iter().any(known) {
+            all.push(mark);
+        }
+    }
+    all
+}
+
+/// The colour of a stretch of a curve that is alone.
+fn color_alone(stroke: Stroke, color: Color) -> Color {
+    match stroke {
+        Stroke::Solid => color,
+        Stroke::Dashed => UNSTABLE,
+        Stroke::Dotted => ASYMMETRIC,
+    }
 }
 
 /// The stretches of a curve as lines, in the units of the axes.
@@ -251,6 +281,7 @@ pub(super) fn unstable_entries(curves: &[Curve], color: Color) -> Vec<Entry> {
     for (stability, label) in lines {
         if curves.iter().any(|curve| curve.has(stability)) {
             let (stroke, label) = (Stroke::of(stability), label.to_owned());
+            let color = if color == FAINT { color } else { color_alone(stroke, color) };
             entries.push(Entry::Line { color, stroke, label });
         }
     }

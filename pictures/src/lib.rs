@@ -1,31 +1,41 @@
 //! Pictures of a branch as SVG: plain data in, text out.
 //!
 //! Stable parts are solid, unstable parts dashed, parts that are unstable to asymmetric modes only
-//! dotted. A quantity has one colour in every picture, and
-//! so has a state whose shape and film pressure are shown.
+//! dotted; on a curve that is alone these have a colour of their own, and lie on top. A quantity has one
+//! colour in every picture, and so has a state whose shape and film pressure are shown. Special points
+//! have their short names beside them ([`labels`]). All text is written by one engine, which sets small
+//! letters below and above the line.
 
 mod axis;
 mod chart;
 mod cycle;
 mod draw;
 pub mod fit;
+mod heading;
+mod label;
 mod map;
 mod page;
 mod palette;
+mod path;
 mod phase;
 mod sheet;
+mod text;
 
 #[cfg(test)]
 mod tests;
 
 pub use chart::DrawError;
 pub use cycle::{LOOP, draw_cycle};
+pub use heading::titled;
+pub use label::labels;
 pub use map::{MAP, draw_map};
 pub use page::{REPORT, cycle_report, report};
 pub use phase::{PHASE, draw_phase};
-pub use sheet::{BOLD, FAMILY, FONT, Ink, Panel, PanelLine, Pen, PngError, Sheet, escape, png};
+pub use sheet::{BOLD, FAMILY, FONT, Ink, Panel, PanelLine, Pen, PngError, Sheet, png};
+pub use text::escape;
 
 use draw::Level;
+use study::case::ResolvedCase;
 use study::record::view::Curve;
 use study::record::{BranchRecord, DiagramResult, Pictures};
 
@@ -42,11 +52,11 @@ pub const NAMES: [&str; 6] = [
 /// Name of the picture of a whole diagram.
 pub const DIAGRAM: &str = "diagram.svg";
 
-/// All branches of a diagram as SVG.
+/// All branches of a diagram of a case as SVG.
 ///
 /// # Errors
 /// When the drawing library fails.
-pub fn draw_diagram(result: &DiagramResult) -> Result<String, DrawError> {
+pub fn draw_diagram(case: &ResolvedCase, result: &DiagramResult) -> Result<String, DrawError> {
     let level = |branch: &BranchRecord| match branch.is_asymmetric() {
         true => Level::Asymmetric,
         false => Level::Depth(branch.depth),
@@ -54,7 +64,7 @@ pub fn draw_diagram(result: &DiagramResult) -> Result<String, DrawError> {
     let curves: Vec<(Level, &Curve)> =
         result.branches.iter().map(|branch| (level(branch), &branch.curve)).collect();
     let (x, y) = &result.axes;
-    draw::branches(&result.title(), x, y, &curves)
+    draw::branches(&titled(&result.title(), case), x, y, &curves)
 }
 
 /// All pictures for which there are data: file name and SVG.

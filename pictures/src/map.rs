@@ -2,17 +2,19 @@
 
 use super::chart::DrawError;
 use super::draw::{self, DISTANCE};
+use super::heading::titled;
+use study::case::ResolvedCase;
 use study::record::MapResult;
 use study::record::view::{Curve, Mark};
 
 /// Name of the picture.
 pub const MAP: &str = "map.svg";
 
-/// The map as SVG: the first parameter over the second, one colour for each kind of curve.
+/// The map of a case as SVG: the first parameter over the second, one colour for each kind of curve.
 ///
 /// # Errors
 /// When the drawing library fails.
-pub fn draw_map(result: &MapResult) -> Result<String, DrawError> {
+pub fn draw_map(case: &ResolvedCase, result: &MapResult) -> Result<String, DrawError> {
     let mut curves: Vec<Curve> = Vec::new();
     for curve in &result.curves {
         match curves.iter_mut().find(|known| known.label == curve.kind) {
@@ -46,12 +48,12 @@ pub fn draw_map(result: &MapResult) -> Result<String, DrawError> {
     let x = match result.key.as_str() {
         _ if !matches!(result.parameter.as_str(), "z0" | "alpha") => &result.key,
         "adhesion" => "adhesion w₀/χ",
-        "bending" => "bending stiffness k_b/(χR₀²)",
-        "pressure" => "ambient pressure P_A R₀/χ",
-        "film" => "film length δ_A/R₀",
-        "surface_tension" => "surface tension γ_BW/χ",
+        "bending" => "bending stiffness k_{b}/(χR₀²)",
+        "pressure" => "ambient pressure P_{A}R₀/χ",
+        "film" => "film length δ_{A}/R₀",
+        "surface_tension" => "surface tension γ_{BW}/χ",
         "moment" => "moment at the ring m/(χR₀²)",
         other => other,
     };
-    draw::map(&result.case, x, y, &curves)
+    draw::map(&titled(&result.case, case), x, y, &curves)
 }

@@ -1,24 +1,35 @@
 //! Colours that people with any colour vision can tell apart (Okabe and Ito), and marker shapes.
 
-use plotters::style::BLACK;
-pub(super) use plotters::style::RGBColor as Color;
-use plotters::style::RGBColor;
 use study::record::phase::Class;
 
-const BLUE: RGBColor = RGBColor(0, 114, 178);
-const VERMILLION: RGBColor = RGBColor(213, 94, 0);
-const GREEN: RGBColor = RGBColor(0, 158, 115);
-const PURPLE: RGBColor = RGBColor(204, 121, 167);
-const ORANGE: RGBColor = RGBColor(230, 159, 0);
-const SKY: RGBColor = RGBColor(86, 180, 233);
+/// Red, green and blue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Color(pub(super) u8, pub(super) u8, pub(super) u8);
 
+/// `#rrggbb`.
+pub(super) fn hex(color: Color) -> String {
+    format!("#{:02x}{:02x}{:02x}", color.0, color.1, color.2)
+}
+
+const BLACK: Color = Color(0, 0, 0);
+const BLUE: Color = Color(0, 114, 178);
+const VERMILLION: Color = Color(213, 94, 0);
+const GREEN: Color = Color(0, 158, 115);
+const PURPLE: Color = Color(204, 121, 167);
+const ORANGE: Color = Color(230, 159, 0);
+const SKY: Color = Color(86, 180, 233);
+
+/// The colour of what is unstable, on a line of one colour.
+pub(super) const UNSTABLE: Color = VERMILLION;
+/// The same of what is unstable to modes without its symmetries only.
+pub(super) const ASYMMETRIC: Color = PURPLE;
 /// Grey of grids.
-pub(super) const GRID: RGBColor = RGBColor(228, 228, 228);
+pub(super) const GRID: Color = Color(228, 228, 228);
 /// Grey of lines that carry no data: zero, axis of symmetry, the sphere at rest.
-pub(super) const FAINT: RGBColor = RGBColor(150, 150, 150);
+pub(super) const FAINT: Color = Color(150, 150, 150);
 
 /// The colour of a quantity, the same in every picture.
-pub(super) fn of_quantity(label: &str) -> RGBColor {
+pub(super) fn of_quantity(label: &str) -> Color {
     match label {
         "force" => BLUE,
         "total" => BLACK,
@@ -34,8 +45,8 @@ pub(super) fn of_quantity(label: &str) -> RGBColor {
 }
 
 /// The colour of the state at a place of a list, the same in every picture.
-pub(super) fn of_state(at: usize) -> RGBColor {
-    const STATES: [RGBColor; 7] = [BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY];
+pub(super) fn of_state(at: usize) -> Color {
+    const STATES: [Color; 7] = [BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY];
     STATES[at % STATES.len()]
 }
 
@@ -79,7 +90,7 @@ pub(super) fn form(kind: &str) -> Form {
 }
 
 /// The colour of a class of a phase diagram: apart in lightness too.
-pub(super) fn of_class(class: Class) -> RGBColor {
+pub(super) fn of_class(class: Class) -> Color {
     match class {
         Class::Flat => SKY,
         Class::Buckles => ORANGE,

@@ -70,10 +70,10 @@ fn words(class: Class) -> &'static str {
 /// What a key is called on an axis.
 fn title(key: &str) -> String {
     match key {
-        "dimensionless.bending" => "bending stiffness k_b/(χ R₀²)".to_owned(),
-        "dimensionless.pressure" => "pressure P_A R₀/χ".to_owned(),
+        "dimensionless.bending" => "bending stiffness k_{b}/(χR₀²)".to_owned(),
+        "dimensionless.pressure" => "pressure P_{A}R₀/χ".to_owned(),
         "dimensionless.adhesion" => "adhesion w₀/χ".to_owned(),
-        "dimensionless.film" => "film thickness δ_A/R₀".to_owned(),
+        "dimensionless.film" => "film thickness δ_{A}/R₀".to_owned(),
         key => shown(key),
     }
 }
@@ -203,7 +203,7 @@ mod tests {
         }
         assert!(!svg.contains("bypasses"));
         // vermillion: one tile and its sample
-        assert_eq!(svg.matches("#D55E00").count(), 2);
+        assert_eq!(svg.matches("#d55e00").count(), 2);
         let error = draw_phase(&result(axes[..1].to_vec(), &classes[..2])).unwrap_err();
         assert!(error.to_string().contains("does not vary two keys"));
     }

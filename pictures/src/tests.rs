@@ -180,14 +180,14 @@ fn shapes_have_true_proportions() {
     let svg = String::from_utf8(files[0].1.clone()).unwrap();
     // the last quarter drawn before the plates: two points, half as high as wide
     let points: Vec<Vec<f64>> = svg
-        .split("points=\"")
+        .split(" d=\"M")
         .skip(1)
         .map(|rest| {
             let list = rest.split('"').next().unwrap();
-            list.split([' ', ',']).filter(|n| !n.is_empty()).map(|n| n.parse().unwrap()).collect()
+            list.split([' ', 'L']).filter_map(|n| n.parse().ok()).collect()
         })
         .collect();
-    // the dashes of the sphere at rest are short
+    // axes are neither
     let diagonal = points
         .iter()
         .filter(|p| p.len() == 4 && p[0] != p[2] && p[1] != p[3])

@@ -251,6 +251,22 @@ test("a language that is no valid tag leaves the page whole", async () => {
   }
 });
 
+test("the language of the system leaves the page whole", async () => {
+  for (const language of ["C", "POSIX", "de_DE.UTF-8", "ja_JP.UTF-8"]) {
+    const env = { ...process.env, LANG: language, LC_ALL: language, LANGUAGE: "" };
+    const own = await chromium.launch({ executablePath: BROWSER, args: ["--no-sandbox"], env });
+    const page = await own.newPage({ viewport: { width: 400, height: 800 } });
+    const complaints = [];
+    page.on("console", (message) => complaints.push(message.text()));
+    page.on("pageerror", (error) => complaints.push(String(error)));
+    await page.goto(pathToFileURL(pages.contact).href);
+    await frames(page);
+    assert.deepEqual(complaints, [], language);
+    assert.equal(await page.locator("figure canvas").count() > 3, true, language);
+    await own.close();
+  }
+});
+
 test("the scheme may change while the page is open", async () => {
   await visit("contact", { viewport: { width: 1280, height: 900 }, colorScheme: "light" }, async (page) => {
     const light = await pixels(page, "Shape");

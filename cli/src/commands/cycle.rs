@@ -39,7 +39,10 @@ pub(super) fn cycle(arguments: &CycleArguments, listen: &Listen<'_>) -> Exit {
             terminal::error(&error.advised());
             Exit::BadInput
         }
-        Ok(result) => deliver(arguments, &case, &result, folder.as_ref()),
+        Ok(mut result) => {
+            result.pictures.title = pictures::titled(&result.pictures.title, &case);
+            deliver(arguments, &case, &result, folder.as_ref())
+        }
     }
 }
 

@@ -149,7 +149,7 @@ fn deliver(
             made.attempt(REPORT, report(&result.case, &result.stopped_detail, &curves));
         }
         if !arguments.output.no_pictures && result.has_curves() {
-            made.attempt(pictures::DIAGRAM, pictures::draw_diagram(result));
+            made.attempt(pictures::DIAGRAM, pictures::draw_diagram(case, result));
         }
     }
     let complete = result.followed;

@@ -54,7 +54,7 @@ fn deliver(
             made.attempt(curve.csv.clone(), branch_csv(&curve.table));
         }
         if !arguments.output.no_pictures && !result.curves.is_empty() {
-            made.attempt(pictures::MAP, pictures::draw_map(result));
+            made.attempt(pictures::MAP, pictures::draw_map(case, result));
         }
     }
     let complete = result.stopped_because.is_complete();

@@ -5,6 +5,7 @@ mod completions;
 mod cycle;
 mod delivery;
 mod diagram;
+mod explore;
 mod figure;
 mod fit;
 mod list;
@@ -26,6 +27,7 @@ pub(crate) fn dispatch(arguments: &Arguments, listen: &Listen<'_>) -> Exit {
     match &arguments.command {
         Command::Trace(arguments) => trace::trace(arguments, listen),
         Command::Diagram(arguments) => diagram::diagram(arguments, listen),
+        Command::Explore(arguments) => explore::explore(arguments, listen),
         Command::Fit(arguments) => fit::fit(arguments),
         Command::Figure(arguments) => figure::figure(arguments, listen),
         Command::Cycle(arguments) => cycle::cycle(arguments, listen),

@@ -10,11 +10,12 @@ use pictures::{REPORT, report};
 
 use crate::terminal;
 use study::case::ResolvedCase;
-use study::record::{TraceResult, branch_csv, events_json, modes_csv, summary};
+use study::record::{TraceResult, branch_csv, events_json, modes_csv, physical_table, summary};
 use study::run::{run_trace, run_trace_reported};
 use study::store::Folder;
 
 const TABLE: &str = "branch.csv";
+const PHYSICAL: &str = "branch-physical.csv";
 const EVENTS: &str = "events.json";
 const MODES: &str = "modes.csv";
 const CASE: &str = "case.toml";
@@ -39,14 +40,17 @@ pub(super) fn trace(arguments: &TraceArguments, listen: &Listen<'_>) -> Exit {
             terminal::error(&error.advised());
             Exit::BadInput
         }
-        Ok(result) => deliver(arguments, &case, &result, folder.as_ref()),
+        Ok(mut result) => {
+            result.pictures.title = pictures::titled(&result.pictures.title, &case);
+            deliver(arguments, &case, &result, folder.as_ref())
+        }
     }
 }
 
 /// The output folder, checked before the work starts; `None` when no files are wanted.
 fn folder(arguments: &TraceArguments, case: &str) -> Result<Option<Folder>, Exit> {
     let names: Vec<&str> =
-        [TABLE, EVENTS, MODES, CASE, REPORT].into_iter().chain(pictures::NAMES).collect();
+        [TABLE, PHYSICAL, EVENTS, MODES, CASE, REPORT].into_iter().chain(pictures::NAMES).collect();
     arguments.output.folder(case, &names, &arguments.case.inputs())
 }
 
@@ -61,6 +65,9 @@ fn deliver(
     if folder.is_some() {
         made.file(CASE, case.to_toml());
         made.attempt(TABLE, branch_csv(&result.table));
+        if let Some(table) = physical_table(case, &result.table) {
+            made.attempt(PHYSICAL, branch_csv(&table));
+        }
         if !result.shapes.is_empty() {
             made.attempt(MODES, modes_csv(&result.shapes));
         }

@@ -5,12 +5,11 @@
 
 mod panel;
 mod png;
-mod text;
 
 pub use png::{PngError, png};
-pub use text::escape;
 
 use super::palette::{Color, of_quantity, of_state};
+use super::text;
 use panel::Layout;
 use std::fmt::Write;
 use study::record::view::Curve;
@@ -157,11 +156,6 @@ impl Sheet {
         svg.push_str("</svg>\n");
         svg
     }
-}
-
-/// `#rrggbb`.
-fn hex(color: Color) -> String {
-    format!("#{:02x}{:02x}{:02x}", color.0, color.1, color.2)
 }
 
 #[cfg(test)]

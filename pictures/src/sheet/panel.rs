@@ -1,9 +1,9 @@
 //! One panel: axes, lines, legend.
 
-use super::text::{self, Style};
-use super::{Panel, PanelLine, Pen, hex};
+use super::{Panel, PanelLine, Pen};
 use crate::axis::Axis;
-use crate::palette::{FAINT, GRID};
+use crate::palette::{FAINT, GRID, hex};
+use crate::text::{self, Style};
 use std::fmt::Write;
 use study::record::view::{Stability, drawable};
 

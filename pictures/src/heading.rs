@@ -1,0 +1,148 @@
+//! Titles that say which shell or problem a picture shows.
+
+use study::case::{
+    Law, PhysicalCase, ProblemCase, ResolvedCase, ShellCase, Stiffness, catalogue, shown,
+};
+
+/// A title with a second line below it: law and groups of a shell, in the units in which the case gives
+/// them; of a problem of the catalogue, what it is and its parameters.
+pub fn titled(title: &str, case: &ResolvedCase) -> String {
+    let more = match &case.problem {
+        ProblemCase::Contact(contact) => {
+            let numbers = match &contact.physical {
+                Some(physical) => physically(physical),
+                None => {
+                    let g = &contact.groups;
+                    listed(&[
+                        ("k_{b}/(χR₀²)", g.bending),
+                        ("P_{A}R₀/χ", g.pressure),
+                        ("w₀/χ", g.adhesion),
+                        ("δ_{A}/R₀", g.film),
+                        ("γ/χ", g.surface_tension),
+                    ])
+                }
+            };
+            format!("{}; {numbers}", law(contact.shell))
+        }
+        ProblemCase::TwoPlates(plates) => {
+            let sides = [("above", plates.plates[0]), ("below", plates.plates[1])];
+            let films: String = sides
+                .into_iter()
+                .filter_map(|(side, plate)| Some((side, plate?)))
+                .map(|(side, plate)| format!(", w₀/χ {side} = {}", number(plate.adhesion)))
+                .collect();
+            let groups = listed(&[
+                ("k_{b}/(χR₀²)", plates.bending),
+                ("P_{A}R₀/χ", plates.pressure),
+                ("γ/χ", plates.surface_tension),
+            ]);
+            format!("{}; {groups}{films}", law(plates.shell))
+        }
+        ProblemCase::RingLoad(ring) => {
+            let groups = listed(&[("k_{b}/(χR₀²)", ring.bending), ("P_{A}R₀/χ", ring.pressure)]);
+            format!("{}; {groups}", law(ring.shell))
+        }
+        ProblemCase::Catalogue(problem) => {
+            let entry = catalogue().into_iter().find(|entry| entry.name == problem.name);
+            let summary = entry.map(|entry| entry.summary).unwrap_or_default();
+            let values: Vec<String> = problem
+                .parameters
+                .iter()
+                .map(|(name, value)| format!("{name} = {}", number(*value)))
+                .collect();
+            let gap = if values.is_empty() || summary.is_empty() { "" } else { "; " };
+            format!("{summary}{gap}{}", values.join(", "))
+        }
+    };
+    if more.is_empty() { title.to_owned() } else { format!("{title}\n{more}") }
+}
+
+/// A title fit for a picture: its first line shortened where a name is very long.
+pub(crate) fn fit(title: &str) -> String {
+    match title.split_once('\n') {
+        Some((first, more)) => format!("{}\n{more}", shown(first)),
+        None => shown(title),
+    }
+}
+
+fn law(shell: ShellCase) -> String {
+    let name = match shell.law {
+        Law::Hooke => "Hooke's law".to_owned(),
+        Law::MooneyRivlin { b } => format!("Mooney-Rivlin's law, b = {}", number(b)),
+        Law::Skalak => "Skalak's law".to_owned(),
+    };
+    format!("{name}, ν = {}", number(shell.poisson))
+}
+
+/// What is zero is left out.
+fn listed(values: &[(&str, f64)]) -> String {
+    let known = values.iter().filter(|(_, value)| *value != 0.0);
+    let words: Vec<String> =
+        known.map(|(name, value)| format!("{name} = {}", number(*value))).collect();
+    words.join(", ")
+}
+
+fn physically(physical: &PhysicalCase) -> String {
+    let mut words = vec![format!("R₀ = {}", physical.radius.text)];
+    match &physical.stiffness {
+        Stiffness::Homogeneous { young, thickness } => {
+            words.push(format!("E = {}, h = {}", young.text, thickness.text));
+        }
+        Stiffness::Moduli { chi, bending } => {
+            words.push(format!("χ = {}, k_{{b}} = {}", chi.text, bending.text));
+        }
+    }
+    words.push(format!("P_{{A}} = {}", physical.pressure.text));
+    words.push(format!("w₀ = {}", physical.adhesion.text));
+    words.push(format!("δ_{{A}} = {}", physical.film.text));
+    if physical.surface_tension.si != 0.0 {
+        words.push(format!("γ = {}", physical.surface_tension.text));
+    }
+    words.join(", ").replace(" um", " µm").replace(" uN", " µN")
+}
+
+/// Four digits, with a power of ten where the number is small or large.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || (1e-2..1e4).contains(&size) {
+        let text = format!("{value:.4}");
+        return text.trim_end_matches('0').trim_end_matches('.').replace('-', "−");
+    }
+    let text = format!("{value:.3e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.').replace('-', "−");
+    let power = format!("10^{{{}}}", exponent.replace('-', "−"));
+    if mantissa == "1" { power } else { format!("{mantissa}·{power}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use study::case::{Override, load};
+
+    fn of(case: &str, keys: &[&str]) -> String {
+        let overrides: Vec<Override> = keys.iter().copied().map(Override::new).collect();
+        titled("it", &load(case.as_ref(), &overrides, &catalogue()).unwrap().case)
+    }
+
+    #[test]
+    fn a_title_says_law_and_groups_or_the_problem() {
+        assert_eq!(
+            of("fig12", &["shell.law=skalak", "shell.poisson=0.3"]),
+            "it\nSkalak's law, ν = 0.3; k_{b}/(χR₀²) = 3·10^{−5}, P_{A}R₀/χ = 3·10^{−3}, \
+             w₀/χ = 2·10^{−3}, δ_{A}/R₀ = 0.0333"
+        );
+        assert!(
+            of("polymer", &[]).contains("R₀ = 1.5 µm, E = 2.1 GPa, h = 25 nm, P_{A} = 101325 Pa")
+        );
+        assert!(of("cusp", &[]).ends_with("; lambda = 1"), "{}", of("cusp", &[]));
+        assert!(of("two-plates", &[]).contains("w₀/χ above = 2·10^{−3}"));
+        assert!(of("ring-load", &[]).contains("k_{b}/(χR₀²) = 9.158·10^{−6}"));
+    }
+
+    #[test]
+    fn numbers_have_four_digits() {
+        let all = [0.0, 0.5, -0.3, 1e-5, 2.5e7, 1234.56789].map(number);
+        assert_eq!(all, ["0", "0.5", "−0.3", "10^{−5}", "2.5·10^{7}", "1234.5679"]);
+    }
+}
