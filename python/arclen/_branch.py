@@ -219,7 +219,8 @@ class Branch:
         self.origin: dict[str, Any] | None = origin
         self.parameter: str = raw.parameter
         self.observables: list[str] = raw.observables
-        self._columns: dict[str, np.ndarray] = {}
+        # at once, while the points are at hand; unknowns are read when they are asked for
+        self._columns: dict[str, np.ndarray] = {name: raw.column(name) for name in self.columns}
         self._events: Events | None = None
         ((self.stopped_because, self.stopped_detail), began) = raw.stopped
         self.began_because: str | None = began[0] if began else None

@@ -15,7 +15,6 @@ def branch(cusp):
 
 
 def test_a_column_is_there_at_once(cusp):
-    cusp.trace("mu", [-1.5], [-2, 1], 2)["x"]  # the first one of a process loads what it needs
     times = []
     for _ in range(20):
         branch = cusp.trace("mu", [-1.5], [-2, 1], 2)
