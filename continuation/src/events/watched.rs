@@ -23,7 +23,7 @@ const CORNER: f64 = 1e3;
 /// Part of a step over which errors of a slope do not count.
 const FAR: f64 = 1e-3;
 /// The same for what only makes its rounding another.
-const ASIDE: f64 = 1e-9;
+const ASIDE: f64 = 1e-12;
 /// By how much an error may exceed what two slopes show of it.
 const NOISE: f64 = 4.0;
 /// Most corrections of an extremum's place.
@@ -126,8 +126,7 @@ fn settle<P: Problem + ?Sized>(
         }
         let known = again.max(f64::EPSILON * (1.0 + at));
         (located.at, located.error) = (at, NOISE * now.max(known));
-        let done = now <= known || (off <= tolerance && now <= tolerance) || 2.0 * now >= off;
-        if done && off.is_finite() {
+        if now <= tolerance.max(known) || 2.0 * now >= off {
             break;
         }
         off = now;
