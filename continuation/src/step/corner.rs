@@ -12,8 +12,11 @@ use super::{Refusal, State};
 use crate::events::interpolate;
 use crate::problem::Problem;
 
-/// Angle between secant and tangent, in radians, below which a corner is not looked for.
+/// Angle between secant and tangent, in radians, below which a step is not refused for its angles alone.
 const VISIBLE: f64 = 0.025;
+/// The same below which a corner is not looked for: a branch that runs beside nearer than this part of a
+/// step.
+const FAINT: f64 = 1e-3;
 /// Part of the angle by which the prediction has to be wrong for a corner in the middle: one at a part `x`
 /// of the step makes `1 - x`.
 const SURPRISE: f64 = 0.15;
@@ -28,6 +31,11 @@ const SINGULAR: f64 = 5.0;
 /// Part of both angles that is the angle between the tangents, below which the step turns one way and
 /// back: a corner against the curvature before it.
 const ONE_WAY: f64 = 0.6;
+/// Contraction of the corrector above which the branch is looked for between the ends.
+const SLOW: f64 = 0.15;
+/// Part of the angle that the cubic may be off in the middle of a step that shows no corner: going over to a
+/// branch that runs beside makes 1/20, the approach to a sharp fold 1/70.
+const BESIDE: f64 = 1.0 / 30.0;
 /// Part of the angle that the cubic may be off in the middle, in steps. A corner there makes 1/32, an arc
 /// of 0.35 radians 1/1000.
 const BOW: f64 = 1.0 / 80.0;
@@ -45,7 +53,7 @@ impl<P: Problem + ?Sized> Core<'_, P> {
     ) -> Result<bool, Refusal> {
         let angle = quality.angle;
         let [from, to] = [cos_a, cos_b].map(|x| x.clamp(-1.0, 1.0).acos());
-        if from.max(to) < VISIBLE || a.orientation != b.orientation {
+        if from.max(to) < FAINT || a.orientation != b.orientation {
             return Ok(false);
         }
         let asymmetry = (from - to).abs() / (from + to);
@@ -54,15 +62,30 @@ impl<P: Problem + ?Sized> Core<'_, P> {
         } else {
             ASYMMETRY
         };
-        if asymmetry > limit || angle < ONE_WAY * (from + to) {
+        let uneven = asymmetry > limit || angle < ONE_WAY * (from + to);
+        let visible = from.max(to) >= VISIBLE;
+        if visible && uneven {
             return Ok(true);
         }
-        if quality.deviation < SURPRISE * angle {
+        let surprising = visible && quality.deviation >= SURPRISE * angle;
+        // another branch close by, or an inflection and slow convergence: the cubic knows
+        let doubtful = uneven || quality.contraction > SLOW;
+        if !surprising && !doubtful {
             return Ok(false);
         }
+        let bow = if surprising { BOW * angle } else { BESIDE * (from + to) };
+        Ok(self.leaves_branch((a, b), h, tangents)? > bow * h)
+    }
+
+    /// How far the cubic from both ends is from the branch in the middle of the step.
+    fn leaves_branch(
+        &mut self,
+        (a, b): (&State, &State),
+        h: f64,
+        tangents: f64,
+    ) -> Result<f64, Refusal> {
         let mut middle = b.clone();
         interpolate(a, b, h, tangents, 0.5 * h, &mut middle);
-        let off = self.distance_from_branch(Constraint::Plane(a, 0.5 * h), &middle)?;
-        Ok(off > BOW * angle * h)
+        self.distance_from_branch(Constraint::Plane(a, 0.5 * h), &middle)
     }
 }
