@@ -158,24 +158,26 @@ impl Bordered {
     fn complement_sign<A: Matrix>(&mut self, a: &mut A, core: &Facts) -> Option<i8> {
         let n = self.n;
         let sign = core.det_sign.filter(|_| core.perturbed == 0 && self.m > 1)?;
+        let mut x = std::mem::take(&mut self.trial);
+        let mut sizes = std::mem::take(&mut self.y);
+        // `cᵀ A⁻¹ δA A⁻¹ b`, by which the rounding `δA` of the factors may change an entry
+        for (k, size) in sizes.iter_mut().enumerate() {
+            x[..n].copy_from_slice(self.row(k));
+            a.solve_transpose(&mut x[..n]);
+            *size = x[..n].iter().map(|x| x.abs()).sum();
+        }
         for k in 0..self.m {
-            let mut x = std::mem::take(&mut self.trial);
             x[..n].copy_from_slice(self.column(k));
             a.solve(&mut x[..n]);
-            let size = max_abs(self.column(k));
-            let growth = if size > 0.0 { self.core_norm * max_abs(&x[..n]) / size } else { 1.0 };
-            for i in 0..self.m {
+            let largest = self.core_norm * max_abs(&x[..n]);
+            for (i, size) in sizes.iter().enumerate() {
                 let d = self.corner(i, k, false);
                 let value = d - dot(self.row(i), &x[..n]);
                 let terms = d.abs() + dot_magnitude(self.row(i), &x[..n]);
-                let error = NOISE * f64::EPSILON * growth.max(1.0) * terms;
-                self.complement.set(i, k, value, error);
-            }
-            self.trial = x;
-            if growth > SINGULAR || !growth.is_finite() {
-                return None;
+                self.complement.set(i, k, value, NOISE * f64::EPSILON * (terms + size * largest));
             }
         }
+        (self.trial, self.y) = (x, sizes);
         self.complement.det_sign().map(|complement| sign * complement)
     }
 

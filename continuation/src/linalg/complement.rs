@@ -29,7 +29,8 @@ impl Complement {
             for k in step..m {
                 for i in step..m {
                     let (value, error) = (self.values[i + k * m].abs(), self.errors[i + k * m]);
-                    let known = if error > 0.0 { value / error } else { f64::INFINITY };
+                    // what is not a number is not known
+                    let known = if error == 0.0 { f64::INFINITY } else { value / error };
                     if value > 0.0 && known > best {
                         (best, at) = (known, (i, k));
                     }
