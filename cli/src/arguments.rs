@@ -316,6 +316,15 @@ pub(crate) struct MergeArguments {
     pub(crate) output: OutputArguments,
 }
 
+/// A format of pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Format {
+    /// Lines, at any size
+    Svg,
+    /// Pixels, two to one of the SVG
+    Png,
+}
+
 /// What to do with the results.
 #[derive(Debug, Args)]
 pub(crate) struct OutputArguments {
@@ -328,6 +337,9 @@ pub(crate) struct OutputArguments {
     /// Draw no pictures
     #[arg(long)]
     pub(crate) no_pictures: bool,
+    /// Formats of the pictures, apart by commas; pages and fits have theirs
+    #[arg(long, value_enum, value_name = "svg,png", value_delimiter = ',', default_value = "svg")]
+    pub(crate) format: Vec<Format>,
     /// No progress, no summary, no notes
     #[arg(long, short)]
     pub(crate) quiet: bool,

@@ -512,6 +512,7 @@ const fillFiles = () => {
   const names = [
     "case.toml", "branch.csv", ...(description.physical ? ["branch-physical.csv"] : []), "events.json",
     ...(contact ? ["force_deformation.svg", "force_distance.svg", "shapes.svg", "film_pressure.svg", "energies.svg"] : []),
+    ...(description.physical ? ["force_deformation-physical.svg", "force_distance-physical.svg", "film_pressure-physical.svg", "energies-physical.svg"] : []),
     ...(description.problem === "ring-load" ? ["diagram.svg", "shapes.svg"] : []),
     ...(!contact && description.problem !== "ring-load" ? ["diagram.svg"] : []),
   ];

@@ -224,7 +224,8 @@ impl Explorer {
     fn file(&self, query: &Query) -> Result<Answer, Refusal> {
         let set = self.set(query)?;
         let name = query.once("name")?.ok_or(Refusal::Malformed)?;
-        let picture = pictures::NAMES.contains(&name);
+        let physical = pictures::PHYSICAL.contains(&name);
+        let picture = physical || pictures::NAMES.contains(&name);
         let known = ["case.toml", "branch.csv", "branch-physical.csv", "events.json"];
         if !picture && !known.contains(&name) {
             return Err(Refusal::NotFound);
@@ -246,7 +247,12 @@ impl Explorer {
                 .and_then(|table| branch_csv(&table).ok())
                 .map(|csv| Answer::of("text/csv", csv)),
             "events.json" => events_json(&traced.result).ok().map(|text| Answer::of(JSON, text)),
-            _ => pictures::draw_all(&traced.result.pictures).ok().and_then(|all| {
+            _ => match physical {
+                true => pictures::draw_physical(&traced.case, &traced.result),
+                false => pictures::draw_all(&traced.result.pictures),
+            }
+            .ok()
+            .and_then(|all| {
                 let found = all.into_iter().find(|(own, _)| own == name);
                 found.map(|(_, svg)| Answer::of("image/svg+xml", svg))
             }),

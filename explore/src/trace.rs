@@ -16,6 +16,11 @@ use study::run::{
 
 /// Elements while something is moved, if the case has more.
 const COARSE: usize = 100;
+/// The same where a branch with so many takes too long to be drawn fifteen times a second.
+const COARSEST: usize = 60;
+/// Too long, and short enough to go back to more.
+const SLOW: Duration = Duration::from_millis(45);
+const QUICK: Duration = Duration::from_millis(15);
 /// The longest a coarse trace may take: what it has until then is shown.
 const LONGEST: Duration = Duration::from_secs(1);
 /// Samples along the meridian of the one state that is shown while something is moved.
@@ -80,6 +85,8 @@ pub(crate) struct Bench {
     text: String,
     catalogue: Vec<CatalogueEntry>,
     working: Mutex<()>,
+    /// Elements while something is moved.
+    coarse: AtomicUsize,
     /// Requests that came while something is moved, and wait.
     waiting: AtomicUsize,
     /// The last branch at rest, with the values that it was asked for by.
@@ -106,6 +113,7 @@ impl Bench {
             case,
             catalogue,
             working: Mutex::new(()),
+            coarse: AtomicUsize::new(COARSE),
             waiting: AtomicUsize::new(0),
             last: Mutex::new(None),
             stop,
@@ -160,8 +168,9 @@ impl Bench {
         let LoadedCase { mut case, notes } = self.load(set)?;
         case.stability = StabilityCase::Axisymmetric;
         if coarse {
-            coarsen(&mut case);
+            coarsen(&mut case, self.coarse.load(Ordering::Relaxed));
         }
+        let begun = Instant::now();
         let (mut cut, mut ended) = (false, false);
         let observer: &mut Observer<'_> = &mut |_| {
             cut = coarse && clock.elapsed() > LONGEST;
@@ -174,7 +183,6 @@ impl Bench {
         };
         let result = match &case.problem {
             ProblemCase::Contact(contact) if contact.device == DeviceCase::Grip => {
-                let begun = Instant::now();
                 let (problem, traced) = contact_branch(&case, contact, observer)?;
                 let mut result = contact_result(&case, &traced, begun.elapsed().as_secs_f64());
                 let points = &traced.branch.points;
@@ -194,6 +202,11 @@ impl Bench {
         };
         if ended {
             return Ok(None);
+        }
+        if coarse && begun.elapsed() > SLOW {
+            self.coarse.store(COARSEST, Ordering::Relaxed);
+        } else if coarse && begun.elapsed() < QUICK {
+            self.coarse.store(COARSE, Ordering::Relaxed);
         }
         let took = clock.elapsed();
         Ok(Some(Arc::new(Traced { case, notes, result, cut, took })))
@@ -247,7 +260,7 @@ pub(crate) fn settles(case: &ResolvedCase) -> bool {
 }
 
 /// Fewer elements.
-fn coarsen(case: &mut ResolvedCase) {
+fn coarsen(case: &mut ResolvedCase, most: usize) {
     case.path.eigenvalues = 0;
     let mesh = match &mut case.problem {
         ProblemCase::Contact(contact) => &mut contact.mesh,
@@ -256,7 +269,7 @@ fn coarsen(case: &mut ResolvedCase) {
         // a mesh is part of such a problem
         ProblemCase::Catalogue(_) => return,
     };
-    mesh.elements = mesh.elements.min(COARSE);
+    mesh.elements = mesh.elements.min(most);
 }
 
 #[cfg(test)]

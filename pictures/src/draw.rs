@@ -82,8 +82,18 @@ pub(super) fn branches(
 
 /// Disjoining pressure against distance from the axis.
 pub(super) fn film_pressure(title: &str, profiles: &[Profile]) -> Result<String, DrawError> {
-    let x = Axis::of("distance from the axis σ/R₀", values(profiles, |p| &p.sigma), 7);
-    let y = Axis::of("disjoining pressure Π δ_{A}/w₀", values(profiles, |p| &p.value), 7);
+    let titles = ["distance from the axis σ/R₀", "disjoining pressure Π δ_{A}/w₀"];
+    pressure(title, titles, profiles)
+}
+
+/// The same with other axes.
+pub(super) fn pressure(
+    title: &str,
+    [x, y]: [&str; 2],
+    profiles: &[Profile],
+) -> Result<String, DrawError> {
+    let x = Axis::of(x, values(profiles, |p| &p.sigma), 7);
+    let y = Axis::of(y, values(profiles, |p| &p.value), 7);
     let mut lines = Vec::new();
     let mut legend = Vec::new();
     for (at, profile) in profiles.iter().enumerate() {

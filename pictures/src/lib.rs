@@ -18,6 +18,7 @@ mod page;
 mod palette;
 mod path;
 mod phase;
+mod physical;
 mod sheet;
 mod text;
 
@@ -31,6 +32,7 @@ pub use label::labels;
 pub use map::{MAP, draw_map};
 pub use page::{REPORT, cycle_report, report};
 pub use phase::{PHASE, draw_phase};
+pub use physical::{PHYSICAL, draw_physical};
 pub use sheet::{BOLD, FAMILY, FONT, Ink, Panel, PanelLine, Pen, PngError, Sheet, png};
 pub use text::escape;
 

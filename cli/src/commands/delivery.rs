@@ -1,7 +1,7 @@
 //! How results leave a command: files, JSON on standard output, a summary, an exit code.
 
 use crate::advice::Advised;
-use crate::arguments::OutputArguments;
+use crate::arguments::{Format, OutputArguments};
 use crate::exit::Exit;
 use crate::terminal;
 use std::fmt::Display;
@@ -26,7 +26,13 @@ impl OutputArguments {
         names: &[&str],
         inputs: &[PathBuf],
     ) -> Result<Option<Folder>, Exit> {
-        let claimed = self.place(case).map(|path| Folder::claim(&path, names, inputs));
+        let pixels: Vec<String> = names
+            .iter()
+            .filter_map(|name| Some(format!("{}.png", name.strip_suffix(".svg")?)))
+            .collect();
+        let names: Vec<&str> =
+            names.iter().copied().chain(pixels.iter().map(String::as_str)).collect();
+        let claimed = self.place(case).map(|path| Folder::claim(&path, &names, inputs));
         claimed.transpose().map_err(|error| {
             terminal::error(&error.advised());
             Exit::BadInput
@@ -46,6 +52,7 @@ impl OutputArguments {
     ) -> Exit {
         let mut written = None;
         if let Some(folder) = folder {
+            made.format(&self.format);
             made.list();
             let earlier = made.earlier(folder.path());
             written = made.take(folder.write_surely(&made.files)).map(|()| folder.path());
@@ -124,6 +131,24 @@ impl Made {
         if let Some(sum) = self.take(written) {
             self.sums.insert(name.to_owned(), sum);
         }
+    }
+
+    /// Pictures in the formats that are wanted.
+    fn format(&mut self, formats: &[Format]) {
+        let (drawn, mut files): (Vec<_>, Vec<_>) = std::mem::take(&mut self.files)
+            .into_iter()
+            .partition(|(name, _)| name.ends_with(".svg") && *name != self.name);
+        for (name, svg) in drawn {
+            let png = format!("{}.png", name.trim_end_matches(".svg"));
+            if formats.contains(&Format::Png) && files.iter().all(|(own, _)| *own != png) {
+                let text = String::from_utf8_lossy(&svg).into_owned();
+                files.extend(self.take(pictures::png(&text)).map(|bytes| (png, bytes)));
+            }
+            if formats.contains(&Format::Svg) {
+                files.push((name, svg));
+            }
+        }
+        self.files = files;
     }
 
     /// Lists the files in the JSON.

@@ -49,8 +49,11 @@ pub(super) fn trace(arguments: &TraceArguments, listen: &Listen<'_>) -> Exit {
 
 /// The output folder, checked before the work starts; `None` when no files are wanted.
 fn folder(arguments: &TraceArguments, case: &str) -> Result<Option<Folder>, Exit> {
-    let names: Vec<&str> =
-        [TABLE, PHYSICAL, EVENTS, MODES, CASE, REPORT].into_iter().chain(pictures::NAMES).collect();
+    let names: Vec<&str> = [TABLE, PHYSICAL, EVENTS, MODES, CASE, REPORT]
+        .into_iter()
+        .chain(pictures::NAMES)
+        .chain(pictures::PHYSICAL)
+        .collect();
     arguments.output.folder(case, &names, &arguments.case.inputs())
 }
 
@@ -77,6 +80,7 @@ fn deliver(
         }
         if !arguments.output.no_pictures {
             made.files(pictures::draw_all(&result.pictures));
+            made.files(pictures::draw_physical(case, result));
         }
     }
     let complete = result.stopped_because.is_complete();

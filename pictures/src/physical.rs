@@ -1,0 +1,108 @@
+//! The pictures of a shell that is given in physical units, in the units of its laboratory.
+
+use super::chart::DrawError;
+use super::draw;
+use study::case::ResolvedCase;
+use study::record::view::{Curve, Profile};
+use study::record::{PhysicalUnits, Scales, TraceResult};
+
+/// Names of the pictures.
+pub const PHYSICAL: [&str; 4] = [
+    "force_deformation-physical.svg",
+    "force_distance-physical.svg",
+    "film_pressure-physical.svg",
+    "energies-physical.svg",
+];
+
+/// The pictures of a trace with physical axes: file name and SVG; none of a case that is dimensionless.
+///
+/// # Errors
+/// When something is missing.
+pub fn draw_physical(
+    case: &ResolvedCase,
+    result: &TraceResult,
+) -> Result<Vec<(String, Vec<u8>)>, DrawError> {
+    let Some(scales) = Scales::of(case) else { return Ok(Vec::new()) };
+    let units = PhysicalUnits::for_table(&scales, &result.table);
+    let of = |unit: &str| {
+        let (name, factor) = units.of(&scales, unit).unwrap_or((unit, 1.0));
+        // the one letter that tables do without
+        let name =
+            if name.starts_with('u') { name.replacen('u', "µ", 1) } else { name.to_owned() };
+        (name, factor)
+    };
+    let (length, force) = (of("R0"), of("sqrt(chi k_b)"));
+    let (energy, film) = (of("chi R0^2"), of("w0/delta_A"));
+    let pictures = &result.pictures;
+    let title = pictures.title.as_str();
+    let mut files = Vec::new();
+    let mut add = |name: &str, svg: String| files.push((name.to_owned(), svg.into_bytes()));
+    let deformation = format!("deformation Δ [{}]", length.0);
+    let force_title = format!("force F [{}]", force.0);
+    if let Some(curve) = &pictures.force_deformation {
+        let curve = scaled(curve, length.1, force.1);
+        add(PHYSICAL[0], draw::diagram(title, &deformation, &force_title, &curve)?);
+    }
+    if let Some(curve) = &pictures.force_distance {
+        let x = format!("plate distance z₀ [{}]", length.0);
+        let curve = scaled(curve, length.1, force.1);
+        add(PHYSICAL[1], draw::diagram(title, &x, &force_title, &curve)?);
+    }
+    if !pictures.film_pressure.is_empty() {
+        let profile = |profile: &Profile| Profile {
+            sigma: times(&profile.sigma, length.1),
+            value: times(&profile.value, film.1),
+            ..profile.clone()
+        };
+        let profiles: Vec<Profile> = pictures.film_pressure.iter().map(profile).collect();
+        let titles = [
+            format!("distance from the axis σ [{}]", length.0),
+            format!("disjoining pressure Π [{}]", film.0),
+        ];
+        add(PHYSICAL[2], draw::pressure(title, [&titles[0], &titles[1]], &profiles)?);
+    }
+    if !pictures.energies.is_empty() {
+        let curves: Vec<Curve> =
+            pictures.energies.iter().map(|curve| scaled(curve, length.1, energy.1)).collect();
+        add(
+            PHYSICAL[3],
+            draw::map(title, &deformation, &format!("energy U [{}]", energy.0), &curves)?,
+        );
+    }
+    Ok(files)
+}
+
+fn times(values: &[f64], factor: f64) -> Vec<f64> {
+    values.iter().map(|value| factor * value).collect()
+}
+
+fn scaled(curve: &Curve, x: f64, y: f64) -> Curve {
+    let mut marks = curve.marks.clone();
+    for mark in &mut marks {
+        // as the curve's own points, to the last bit: they tell where stability changes
+        (mark.x, mark.y) = (x * mark.x, y * mark.y);
+    }
+    Curve { x: times(&curve.x, x), y: times(&curve.y, y), marks, ..curve.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ops::ControlFlow;
+    use study::case::{Override, load};
+    use study::run::run_trace;
+
+    #[test]
+    fn a_physical_case_has_axes_of_its_laboratory() {
+        let keys = ["mesh.elements=40", "path.end=1.0", "stability.scan=axisymmetric"];
+        let case = load("polymer".as_ref(), &keys.map(Override::new), &[]).unwrap().case;
+        let result = run_trace(&case, &mut |_| ControlFlow::Continue(())).unwrap();
+        let files = draw_physical(&case, &result).unwrap();
+        assert_eq!(files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), PHYSICAL);
+        let svg = |at: usize| String::from_utf8(files[at].1.clone()).unwrap();
+        assert!(svg(0).contains("deformation Δ [nm]") && svg(0).contains("force F [pN]"));
+        assert!(svg(2).contains("disjoining pressure Π [kPa]"));
+        let plain = load("fig12".as_ref(), &[], &[]).unwrap().case;
+        assert!(draw_physical(&plain, &result).unwrap().is_empty());
+    }
+}
