@@ -160,9 +160,43 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
     Chart { title: fit(title), x, y, lines, marks: Vec::new(), legend, size }.svg()
 }
 
-/// Curves of special points in two parameters.
-pub(super) fn map(title: &str, x: &str, y: &str, curves: &[Curve]) -> Result<String, DrawError> {
-    chart(title, x, y, curves).svg()
+/// Several curves over one axis.
+pub(super) fn curves(title: &str, x: &str, y: &str, all: &[Curve]) -> Result<String, DrawError> {
+    chart(title, x, y, all).svg()
+}
+
+/// Curves of special points in two parameters; the second one is logarithmic where it goes over decades.
+/// `own` is its value in the case.
+pub(super) fn plane(
+    title: &str,
+    x: &str,
+    y: &str,
+    curves: &[Curve],
+    own: Option<f64>,
+) -> Result<String, DrawError> {
+    let (low, high) = values(curves, |c| &c.x)
+        .filter(|value| drawable(*value))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    // two powers of ten at least, or there would be one tick
+    let logarithmic = low > 0.0 && high.log10().floor() - low.log10().ceil() >= 1.0;
+    let place = |value: f64| if logarithmic { value.log10() } else { value };
+    let mut placed = curves.to_vec();
+    for curve in &mut placed {
+        curve.x.iter_mut().for_each(|value| *value = place(*value));
+        curve.marks.iter_mut().for_each(|mark| mark.x = place(mark.x));
+    }
+    let mut chart = chart(title, x, y, &placed);
+    if logarithmic {
+        chart.x = Axis::of_logarithms(&shown(x), chart.x.low, chart.x.high);
+    }
+    let own = own.map(|value| place(value) / chart.x.unit);
+    if let Some(at) = own.filter(|at| *at > chart.x.low && *at < chart.x.high) {
+        let points = vec![(at, chart.y.low), (at, chart.y.high)];
+        let (color, stroke) = (FAINT, Stroke::Dashed);
+        chart.lines.insert(0, Line { points, color, width: 1, stroke });
+        chart.legend.push(Entry::Line { color, stroke, label: "this case".to_owned() });
+    }
+    chart.svg()
 }
 
 /// A chart of curves along a branch, with their special points.

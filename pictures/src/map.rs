@@ -3,7 +3,7 @@
 use super::chart::DrawError;
 use super::draw::{self, DISTANCE};
 use super::heading::titled;
-use study::case::ResolvedCase;
+use study::case::{ProblemCase, ResolvedCase};
 use study::record::MapResult;
 use study::record::view::{Curve, Mark};
 
@@ -55,5 +55,43 @@ pub fn draw_map(case: &ResolvedCase, result: &MapResult) -> Result<String, DrawE
         "moment" => "moment at the ring m/(χR₀²)",
         other => other,
     };
-    draw::map(&titled(&result.case, case), x, y, &curves)
+    let own = value(case, &result.key);
+    draw::plane(&titled(&result.case, case), x, y, &curves, own)
+}
+
+/// The value of a key in the case.
+fn value(case: &ResolvedCase, key: &str) -> Option<f64> {
+    match &case.problem {
+        ProblemCase::Contact(contact) => match key {
+            "adhesion" => Some(contact.groups.adhesion),
+            "bending" => Some(contact.groups.bending),
+            "pressure" => Some(contact.groups.pressure),
+            "film" => Some(contact.groups.film),
+            "surface_tension" => Some(contact.groups.surface_tension),
+            _ => None,
+        },
+        ProblemCase::RingLoad(ring) => match key {
+            "bending" => Some(ring.bending),
+            "pressure" => Some(ring.pressure),
+            _ => None,
+        },
+        ProblemCase::Catalogue(problem) => problem.parameters.get(key).copied(),
+        ProblemCase::TwoPlates(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ops::ControlFlow;
+    use study::case::{catalogue, load};
+    use study::run::run_map;
+
+    #[test]
+    fn a_map_shows_where_its_case_is() {
+        let case = load("cusp".as_ref(), &[], &catalogue()).unwrap().case;
+        let map = run_map(&case, "lambda", &mut |_| ControlFlow::Continue(())).unwrap();
+        let svg = draw_map(&case, &map).unwrap();
+        assert!(svg.contains(">this case<") && svg.contains(">fold<"), "{svg}");
+    }
 }

@@ -66,7 +66,7 @@ pub fn draw_physical(
             pictures.energies.iter().map(|curve| scaled(curve, length.1, energy.1)).collect();
         add(
             PHYSICAL[3],
-            draw::map(title, &deformation, &format!("energy U [{}]", energy.0), &curves)?,
+            draw::curves(title, &deformation, &format!("energy U [{}]", energy.0), &curves)?,
         );
     }
     Ok(files)
@@ -100,7 +100,7 @@ mod tests {
         let files = draw_physical(&case, &result).unwrap();
         assert_eq!(files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), PHYSICAL);
         let svg = |at: usize| String::from_utf8(files[at].1.clone()).unwrap();
-        assert!(svg(0).contains("deformation Δ [nm]") && svg(0).contains("force F [pN]"));
+        assert!(svg(0).contains("deformation Δ [nm]") && svg(0).contains("force F [nN]"));
         assert!(svg(2).contains("disjoining pressure Π [kPa]"));
         let plain = load("fig12".as_ref(), &[], &[]).unwrap().case;
         assert!(draw_physical(&plain, &result).unwrap().is_empty());

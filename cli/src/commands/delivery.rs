@@ -133,22 +133,29 @@ impl Made {
         }
     }
 
-    /// Pictures in the formats that are wanted.
+    /// Pictures in the formats that are wanted; those that have a PNG already stay as they are.
     fn format(&mut self, formats: &[Format]) {
-        let (drawn, mut files): (Vec<_>, Vec<_>) = std::mem::take(&mut self.files)
-            .into_iter()
-            .partition(|(name, _)| name.ends_with(".svg") && *name != self.name);
-        for (name, svg) in drawn {
-            let png = format!("{}.png", name.trim_end_matches(".svg"));
-            if formats.contains(&Format::Png) && files.iter().all(|(own, _)| *own != png) {
-                let text = String::from_utf8_lossy(&svg).into_owned();
-                files.extend(self.take(pictures::png(&text)).map(|bytes| (png, bytes)));
+        let made = std::mem::take(&mut self.files);
+        let names: Vec<String> = made.iter().map(|(name, _)| name.clone()).collect();
+        for (name, bytes) in made {
+            let Some(png) = name.strip_suffix(".svg").map(|stem| format!("{stem}.png")) else {
+                self.files.push((name, bytes));
+                continue;
+            };
+            if names.contains(&png) {
+                self.files.push((name, bytes));
+                continue;
+            }
+            if formats.contains(&Format::Png) {
+                let pixels = pictures::png(&String::from_utf8_lossy(&bytes));
+                if let Some(pixels) = self.take(pixels) {
+                    self.files.push((png, pixels));
+                }
             }
             if formats.contains(&Format::Svg) {
-                files.push((name, svg));
+                self.files.push((name, bytes));
             }
         }
-        self.files = files;
     }
 
     /// Lists the files in the JSON.

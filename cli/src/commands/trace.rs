@@ -150,6 +150,26 @@ mod tests {
     }
 
     #[test]
+    fn pictures_have_the_formats_that_are_wanted() {
+        let place = tempfile::tempdir().unwrap();
+        let result = example();
+        for (format, endings) in
+            [("svg", [true, false]), ("png", [false, true]), ("svg,png", [true; 2])]
+        {
+            let out = place.path().join(format);
+            assert_eq!(deliver_to(&out, &["--format", format], &result), Exit::Done);
+            let names = names(&out);
+            let there = ["shapes.svg", "shapes.png"].map(|name| names.contains(&name.to_owned()));
+            assert_eq!(there, endings, "{names:?}");
+        }
+        let png = fs::read(place.path().join("png/shapes.png")).unwrap();
+        assert_eq!(&png[1..4], b"PNG");
+        assert!(
+            Arguments::try_parse_from(["arclen", "trace", "fig12", "--format", "pdf"]).is_err()
+        );
+    }
+
+    #[test]
     fn a_trace_that_stopped_early_leaves_its_files_and_exits_with_3() {
         let place = tempfile::tempdir().unwrap();
         let mut result = example();
