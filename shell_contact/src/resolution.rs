@@ -9,6 +9,7 @@ use crate::contact::ContactProblem;
 use crate::density::Coefficients;
 use crate::film::Potential;
 use crate::half::HalfMeridian;
+use crate::spline::Basis;
 use crate::two_plates::{SupportedProblem, TwoPlatesProblem};
 use continuation::EvalError;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -58,8 +59,26 @@ impl<F: Potential> ContactProblem<F> {
     /// # Errors
     /// When the parameters are out of range.
     pub fn resolution(&self, u: &[f64], p: &[f64]) -> Result<Resolution, EvalError> {
+        self.resolution_at(&self.resolution_sites(), u, p)
+    }
+
+    /// Where [`Self::resolution`] looks, for many states.
+    pub fn resolution_sites(&self) -> Sites {
+        Sites::of(&self.mesh)
+    }
+
+    /// [`Self::resolution`] at sites that are known.
+    ///
+    /// # Errors
+    /// When the parameters are out of range.
+    pub fn resolution_at(
+        &self,
+        sites: &Sites,
+        u: &[f64],
+        p: &[f64],
+    ) -> Result<Resolution, EvalError> {
         let (c, _) = self.coefficients(u, p)?;
-        Ok(of_half(&self.mesh, &self.potential, u, &c))
+        Ok(of_half(&self.mesh, sites, &self.potential, u, &c))
     }
 }
 
@@ -76,8 +95,10 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     /// [`Self::resolution`] with plates at heights of their own.
     pub(crate) fn resolution_between(&self, u: &[f64], c: &[Coefficients; 2]) -> Resolution {
         let [top, bottom] = self.halves();
-        let upper = of_half(&top, &self.potentials.0, u, &c[0]);
-        upper.least(of_half(&bottom, &self.potentials.1, u, &c[1]))
+        // the mesh of one half is that of the other
+        let sites = Sites::of(&top);
+        let upper = of_half(&top, &sites, &self.potentials.0, u, &c[0]);
+        upper.least(of_half(&bottom, &sites, &self.potentials.1, u, &c[1]))
     }
 }
 
@@ -104,27 +125,50 @@ pub(crate) fn longest(half: &impl HalfMeridian, (low, high): (f64, f64)) -> f64 
     near.map(|(start, end)| end - start).fold(0.0, f64::max)
 }
 
+/// Ends and middle of every element: what of them does not depend on the state.
+#[derive(Debug, Clone)]
+pub struct Sites {
+    each: Vec<Site>,
+    longest: f64,
+}
+
+#[derive(Debug, Clone)]
+struct Site {
+    element: usize,
+    length: f64,
+    cos: f64,
+    basis: Basis,
+}
+
+impl Sites {
+    fn of(half: &impl HalfMeridian) -> Sites {
+        let knots = half.knots();
+        let mut each = Vec::with_capacity(3 * half.elements());
+        for element in 0..half.elements() {
+            let (start, end) = (knots.at(element), knots.at(element + 1));
+            let length = end - start;
+            for at in [start, start + 0.5 * length, end] {
+                each.push(Site { element, length, cos: at.cos(), basis: knots.basis(element, at) });
+            }
+        }
+        Sites { each, longest: longest(half, (0.0, FRAC_PI_2)) }
+    }
+}
+
 fn of_half<F: Potential>(
     half: &impl HalfMeridian,
+    sites: &Sites,
     potential: &F,
     u: &[f64],
     c: &Coefficients,
 ) -> Resolution {
     let mut film = f64::INFINITY;
-    for e in 0..half.elements() {
-        let (start, end) = (half.knots().at(e), half.knots().at(e + 1));
-        let length = end - start;
-        for part in [0.0, 0.5, 1.0] {
-            let at = start + part * length;
-            let [(_, w), ..] = half.displacement_in(u, e, at);
-            let delta = c.plate - at.cos() - w;
-            let stiffness = potential.jet(delta, c.adhesion, c.film).d2.abs();
-            let own = (c.bending / stiffness).sqrt().sqrt();
-            film = film.min(own / length);
-        }
+    for site in &sites.each {
+        let [(_, w), ..] = half.local(u, site.element).displacement(&site.basis);
+        let delta = c.plate - site.cos - w;
+        let stiffness = potential.jet(delta, c.adhesion, c.film).d2.abs();
+        let own = (c.bending / stiffness).sqrt().sqrt();
+        film = film.min(own / site.length);
     }
-    Resolution {
-        per_film_length: film,
-        per_wavelength: wavelength(c) / longest(half, (0.0, FRAC_PI_2)),
-    }
+    Resolution { per_film_length: film, per_wavelength: wavelength(c) / sites.longest }
 }

@@ -16,9 +16,10 @@ impl Resolved {
     pub(super) fn of(problem: &ContactProblem, traced: &ContactBranch) -> Resolved {
         let unknowns = problem.mesh().unknowns();
         let height = height(&traced.branch);
+        let sites = problem.resolution_sites();
         let look = |point: &Point| {
             let parameters = problem.parameters_at(height(point));
-            problem.resolution(&point.u[..unknowns], &parameters).ok()
+            problem.resolution_at(&sites, &point.u[..unknowns], &parameters).ok()
         };
         let each = traced.branch.points.iter().map(look).collect();
         Resolved::along(&traced.branch, problem.mesh().elements(), ("z0", height), each)
