@@ -6,6 +6,7 @@ use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::{Mutex, PoisonError};
 
 /// The first program of these names on the path.
 fn program(names: &[&str]) -> Option<PathBuf> {
@@ -64,8 +65,12 @@ fn the_live_page_works_in_a_browser() {
     in_a_browser("explore.test.js");
 }
 
+/// One browser at a time: tests measure how fast pages are.
+static TURN: Mutex<()> = Mutex::new(());
+
 /// Runs a file of tests; where there is no browser, says so.
 fn in_a_browser(file: &str) {
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/browser");
     let (node, browser) = match tools(&tests) {
         Ok(tools) => tools,
