@@ -27,8 +27,9 @@ mod suspect;
 pub mod tracer;
 
 pub use branch::{
-    Branch, Criticality, Crossing, Detail, Direction, Doubt, Eigenvector, Event, EventKind,
-    FoldForm, HopfForm, Offset, Point, RestartPoint, Shape, Statistics, Stop, StopReason,
+    Branch, Criticality, Crossing, Detail, Direction, DoublingForm, Doubt, Eigenvector, Event,
+    EventKind, FoldForm, HopfForm, Offset, Point, RestartPoint, Shape, Statistics, Stop,
+    StopReason,
 };
 pub use derivative_check::{DerivativeCheck, check_derivatives};
 #[cfg(feature = "dual")]

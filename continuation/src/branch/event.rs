@@ -139,6 +139,14 @@ impl Event {
         }
     }
 
+    /// The normal form of a period doubling.
+    pub fn doubling(&self) -> Option<&DoublingForm> {
+        match &self.detail {
+            Detail::Doubling(doubling) => Some(doubling),
+            _ => None,
+        }
+    }
+
     /// The normal form of a Hopf point.
     pub fn hopf(&self) -> Option<&HopfForm> {
         match &self.detail {
@@ -162,6 +170,8 @@ pub enum Detail {
     Crossing(Crossing),
     /// Of a Hopf point.
     Hopf(HopfForm),
+    /// Of a period doubling.
+    Doubling(DoublingForm),
 }
 
 /// A fold: `p - p₀ = ½ p″ s² + …`, or `c s⁴ + …` and so on.
@@ -289,6 +299,20 @@ pub struct Offset {
     pub multiple: f64,
     /// The unknowns there, less those of the branch point.
     pub du: Vec<f64>,
+}
+
+/// A period doubling: `p - p₀ = ½ p″ x² + …` along the doubled cycles, `x` their part along the critical
+/// mode, of length 1 in the metric of [`CycleProblem`](crate::cycles::CycleProblem).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct DoublingForm {
+    /// `d²p/dx²`.
+    pub curvature: f64,
+    /// Estimated error of it.
+    pub curvature_error: f64,
+    /// Supercritical where the doubled cycles exist on the side of the parameter on which the single
+    /// ones are unstable in the critical mode. `None` where the curvature is not told from 0, the counts
+    /// of unstable multipliers on both sides are not certain, or the parameter turns there.
+    pub criticality: Option<Criticality>,
 }
 
 /// A Hopf point: periodic solutions are born.

@@ -5,8 +5,8 @@ mod event;
 
 pub use access::RestartPoint;
 pub use event::{
-    Criticality, Crossing, Detail, Direction, Eigenvector, Event, EventKind, FoldForm, HopfForm,
-    Offset, Shape,
+    Criticality, Crossing, Detail, Direction, DoublingForm, Eigenvector, Event, EventKind,
+    FoldForm, HopfForm, Offset, Shape,
 };
 
 use serde::{Deserialize, Serialize};
@@ -65,6 +65,8 @@ pub enum StopReason {
     PeriodUnbounded,
     /// The cycles shrink to an equilibrium, a Hopf point ([`crate::cycles`]).
     CyclesVanish,
+    /// Doubled cycles come back to those of half their period ([`crate::cycles`]).
+    PeriodHalved,
     /// The branch came back over its start, against its direction.
     ReturnedToStart,
     /// The branch goes on as one that is known already ([`crate::diagram`]).
@@ -76,8 +78,8 @@ pub enum StopReason {
 impl StopReason {
     /// Whether the branch was traced as far as it was asked to be.
     pub fn is_complete(self) -> bool {
-        use StopReason::{ClosedLoop, CyclesVanish, Domain, Retraced, Target};
-        matches!(self, Target | ClosedLoop | Domain | Retraced | CyclesVanish)
+        use StopReason::{ClosedLoop, CyclesVanish, Domain, PeriodHalved, Retraced, Target};
+        matches!(self, Target | ClosedLoop | Domain | Retraced | CyclesVanish | PeriodHalved)
     }
 }
 
@@ -93,6 +95,7 @@ impl fmt::Display for StopReason {
             StopReason::Unbounded => "unbounded",
             StopReason::PeriodUnbounded => "period-unbounded",
             StopReason::CyclesVanish => "cycles-vanish",
+            StopReason::PeriodHalved => "period-halved",
             StopReason::ReturnedToStart => "returned-to-start",
             StopReason::Retraced => "retraced",
             StopReason::Interrupted => "interrupted",

@@ -22,6 +22,9 @@ const FIRST: f64 = 0.02;
 const CORRECTION: [f64; 2] = [0.01, 0.2];
 /// Factor between amplitudes that are tried, and the largest number of them.
 const FACTOR: f64 = 3.0;
+/// Distance of the parameter from the special point, in its scale, beyond which the amplitude does not grow:
+/// nothing is to be passed over on the way to the first cycle.
+const PASSED: f64 = 0.05;
 const MOST: usize = 60;
 
 /// A cycle from which a branch leaves a special point.
@@ -97,16 +100,7 @@ impl SmallCycle {
         let (which, p) = place(problem, &cycles.branch, event)?;
         let single = cycles.cycles.get(event.point).ok_or(foreign("it has no such point"))?;
         let single = Cycle { parameters: p, ..single.cycle.clone() };
-        let equations = CycleProblem::new(problem, &single)?;
-        let x = equations.unknowns(&single);
-        let mode = equations.flip(&x, &single.parameters)?.ok_or(CycleError::NoEigenvector)?;
-        let mut mesh: Vec<f64> = single.mesh.iter().map(|t| 0.5 * t).collect();
-        mesh.extend(single.mesh.iter().skip(1).map(|t| 0.5 + 0.5 * t));
-        let mut values = single.values.clone();
-        values.extend_from_slice(&single.values);
-        let mut direction = mode.clone();
-        direction.extend(mode.iter().map(|w| -w));
-        let base = Cycle { mesh, values, period: 2.0 * single.period, ..single.clone() };
+        let (base, direction) = twice(problem, &single)?;
         leave(problem, which, &base, direction, single.amplitude(), settings)
     }
 
@@ -143,6 +137,24 @@ impl SmallCycle {
     }
 }
 
+/// A cycle run through twice, and the direction in which those of twice the period leave it where a
+/// multiplier is −1.
+pub(super) fn twice<P: Problem + ?Sized>(
+    problem: &P,
+    single: &Cycle,
+) -> Result<(Cycle, Vec<f64>), CycleError> {
+    let equations = CycleProblem::new(problem, single)?;
+    let x = equations.unknowns(single);
+    let mode = equations.flip(&x, &single.parameters)?.ok_or(CycleError::NoEigenvector)?;
+    let mut mesh: Vec<f64> = single.mesh.iter().map(|t| 0.5 * t).collect();
+    mesh.extend(single.mesh.iter().skip(1).map(|t| 0.5 + 0.5 * t));
+    let mut values = single.values.clone();
+    values.extend_from_slice(&single.values);
+    let mut direction = mode.clone();
+    direction.extend(mode.iter().map(|w| -w));
+    Ok((Cycle { mesh, values, period: 2.0 * single.period, ..single.clone() }, direction))
+}
+
 fn foreign(what: &'static str) -> CycleError {
     CycleError::Foreign { what }
 }
@@ -169,19 +181,31 @@ fn leave<P: Problem + ?Sized>(
     problem: &P,
     which: ParamId,
     base: &Cycle,
-    mut direction: Vec<f64>,
+    direction: Vec<f64>,
     size: f64,
     settings: &CycleSettings,
 ) -> Result<SmallCycle, CycleError> {
+    let (cycle, ..) = depart(problem, which, base, direction, size)?;
+    let increasing = cycle.parameters[which.0] >= base.parameters[which.0];
+    // adapting the mesh at a fixed parameter is not worth a failure
+    let cycle = cycle.adapted(problem, settings).unwrap_or(cycle);
+    Ok(SmallCycle { cycle, increasing })
+}
+
+/// The cycle that is `base` plus a small multiple of `direction`, corrected; the multiple, and the
+/// direction of length 1 in the metric of the equations.
+pub(super) fn depart<P: Problem + ?Sized>(
+    problem: &P,
+    which: ParamId,
+    base: &Cycle,
+    mut direction: Vec<f64>,
+    size: f64,
+) -> Result<(Cycle, f64, Vec<f64>), CycleError> {
     let mut epsilon = FIRST * size;
     let (mut best, mut shrinking) = (None, false);
     let mut refusal = Refusal::Singular;
-    let shifted = |by: f64, direction: &[f64]| {
-        let values = base.values.iter().zip(direction).map(|(u, d)| u + by * d).collect();
-        Cycle { values, ..base.clone() }
-    };
     // of length 1 in the metric, which any orbit of the same mesh gives
-    let equations = CycleProblem::new(problem, &shifted(epsilon, &direction))?;
+    let equations = CycleProblem::new(problem, &shifted(base, epsilon, &direction))?;
     let mut y = vec![0.0; equations.dim()];
     direction.push(0.0);
     equations.metric(&direction, &mut y);
@@ -192,22 +216,26 @@ fn leave<P: Problem + ?Sized>(
     }
     direction.iter_mut().for_each(|d| *d /= norm);
     for _ in 0..MOST {
-        let equations = CycleProblem::new(problem, &shifted(epsilon, &direction))?;
-        let weights =
-            Weights { unknowns: epsilon, parameter: problem.parameters()[which.0].scale.abs() };
-        match correct(&equations, which, base, &direction, epsilon, weights) {
+        match correct(problem, which, base, &direction, epsilon) {
             Ok((cycle, first)) => {
+                let distance = (cycle.parameters[which.0] - base.parameters[which.0]).abs();
                 let far = first > CORRECTION[1];
                 if !far || best.is_none() {
-                    best = Some(cycle);
+                    best = Some((cycle, epsilon));
                 }
                 if !far && (shrinking || first > CORRECTION[0]) {
+                    break;
+                }
+                let scale = problem.parameters()[which.0].scale.abs();
+                // the parameter varies as the square of the amplitude
+                if !far && FACTOR * FACTOR * distance > PASSED * scale {
                     break;
                 }
                 shrinking |= far;
                 epsilon *= if far { 1.0 / FACTOR } else { FACTOR };
             }
-            Err(error) => {
+            Err(Attempt::Cycle(error)) => return Err(error),
+            Err(Attempt::Refused(error)) => {
                 if best.is_some() {
                     break;
                 }
@@ -216,24 +244,37 @@ fn leave<P: Problem + ?Sized>(
             }
         }
     }
-    let Some(cycle) = best else {
+    let Some((cycle, epsilon)) = best else {
         return Err(CycleError::NoSmallCycle { amplitude: epsilon, refusal });
     };
-    let increasing = cycle.parameters[which.0] >= base.parameters[which.0];
-    // adapting the mesh at a fixed parameter is not worth a failure
-    let cycle = cycle.adapted(problem, settings).unwrap_or(cycle);
-    Ok(SmallCycle { cycle, increasing })
+    Ok((cycle, epsilon, direction))
+}
+
+fn shifted(base: &Cycle, by: f64, direction: &[f64]) -> Cycle {
+    let values = base.values.iter().zip(direction).map(|(u, d)| u + by * d).collect();
+    Cycle { values, ..base.clone() }
+}
+
+/// Why there is no cycle at an amplitude.
+pub(super) enum Attempt {
+    /// No equations.
+    Cycle(CycleError),
+    /// The corrector refused it.
+    Refused(Refusal),
 }
 
 /// The cycle at the distance `epsilon` along the direction, and how far the first correction went.
-fn correct<P: Problem + ?Sized>(
-    equations: &CycleProblem<'_, P>,
+pub(super) fn correct<P: Problem + ?Sized>(
+    problem: &P,
     which: ParamId,
     base: &Cycle,
     direction: &[f64],
     epsilon: f64,
-    weights: Weights,
-) -> Result<(Cycle, f64), Refusal> {
+) -> Result<(Cycle, f64), Attempt> {
+    let start = shifted(base, epsilon, direction);
+    let equations = &CycleProblem::new(problem, &start).map_err(Attempt::Cycle)?;
+    let weights =
+        Weights { unknowns: epsilon, parameter: problem.parameters()[which.0].scale.abs() };
     let settings = Settings { counting: Counting::Few, ..Settings::default() };
     let mut core = Core::new(equations, which, &base.parameters, weights, &settings);
     let mut from = State::new(equations.dim(), equations.observables().len());
@@ -245,7 +286,8 @@ fn correct<P: Problem + ?Sized>(
     from.length = epsilon;
     let mut x = from.clone();
     x.u.iter_mut().zip(&from.tu).for_each(|(u, t)| *u += t);
-    let corrected = core.correct(Constraint::Plane(&from, 1.0), &mut x, Precision::Event)?;
+    let corrected = core.correct(Constraint::Plane(&from, 1.0), &mut x, Precision::Event);
+    let corrected = corrected.map_err(Attempt::Refused)?;
     let mut p = base.parameters.clone();
     p[which.0] = x.p;
     Ok((equations.cycle(&x.u, &p), corrected.first))

@@ -283,6 +283,35 @@ impl Cycle {
         if shrunk { Err(CycleError::Constant) } else { Ok(found) }
     }
 
+    /// Mean of the states at the nodes, which lie as densely as the mesh.
+    pub(super) fn mean(&self) -> Vec<f64> {
+        let (n, per_interval) = (self.dim(), self.degree * self.dim());
+        let mut mean = vec![0.0; n];
+        for (w, values) in self.mesh.windows(2).zip(self.values.chunks_exact(per_interval)) {
+            let weight = (w[1] - w[0]) / self.degree as f64;
+            for state in values.chunks_exact(n) {
+                mean.iter_mut().zip(state).for_each(|(m, u)| *m += weight * u);
+            }
+        }
+        mean
+    }
+
+    /// By how much the state changes within half a period, at most, over the amplitude: 0 where half
+    /// the period is one too.
+    pub(super) fn halfway(&self) -> f64 {
+        let n = self.dim();
+        let basis = Basis::new(self.degree);
+        let orbit = Orbit { n, mesh: &self.mesh, values: &self.values, basis: &basis };
+        let (mut here, mut there) = (vec![0.0; n], vec![0.0; n]);
+        let mut most = 0.0_f64;
+        for t in self.mesh.iter().filter(|t| **t < 0.5) {
+            orbit.at(*t, &mut here);
+            orbit.at(t + 0.5, &mut there);
+            most = here.iter().zip(&there).fold(most, |m, (a, b)| m.max((a - b).abs()));
+        }
+        most / self.amplitude()
+    }
+
     /// Largest range of an unknown.
     pub(super) fn amplitude(&self) -> f64 {
         let n = self.dim();

@@ -73,18 +73,25 @@
 //! branch that crosses. The error of a special point contains that of the discretisation: where the point
 //! lies when all intervals are halved ([`CycleBranch::event_errors`]).
 //!
+//! Near a period doubling the parameter of the doubled cycles is `p₀ + ½ p″ x²`, `x` their amplitude:
+//! [`DoublingForm`](crate::DoublingForm) has `p″` with its error, and calls the point super- or subcritical where
+//! the sign is beyond it and the counts on both sides are certain.
+//!
+//! [`explore()`] follows all cycles that leave the Hopf points of a list of branches, each once, and says what is open.
+//!
 //! A branch ends with [`PeriodUnbounded`](crate::StopReason::PeriodUnbounded) where the period grows while the
 //! parameter comes to rest, and with [`CyclesVanish`](crate::StopReason::CyclesVanish) where the cycles shrink to
-//! an equilibrium.
+//! an equilibrium, and with [`PeriodHalved`](crate::StopReason::PeriodHalved) where doubled cycles come back to single
+//! ones.
 //!
 //! # Limits
 //! Mass matrices of full rank; `n m` at most [`MAX_BLOCK`]: blocks are dense whatever the storage of the
 //! problem's Jacobian. Extrema are those of the polynomials, with the error `O(h^{m+1})`. Gauss collocation
 //! damps no fast mode on steps that are long for it: multipliers of very stiff directions come out too large,
-//! which their errors show. Where layers are sharp, as in relaxation oscillations, steps
-//! along the branch become short: van der Pol's cycles take 5000 points from `μ = 1` to 98. Near the unit multiplier of a fold, and at a branch point, two multipliers are
+//! which their errors show. Within a canard explosion the parameter is the same to rounding, and its turns are not
+//! found. Near the unit multiplier of a fold, and at a branch point, two multipliers are
 //! close to 1 and neither is known better than the square root of rounding; counts are uncertain there. Whether
-//! a period doubling or a torus is super- or subcritical is not said; curves of special points in two
+//! a torus is super- or subcritical is not said; curves of special points in two
 //! parameters are not followed. An approach to a homoclinic orbit is told by the period alone.
 //!
 //! # References
@@ -104,6 +111,9 @@ mod birth;
 mod collocation;
 mod cycle;
 mod cyclic;
+mod doubling;
+mod ends;
+mod explore;
 mod floquet;
 mod matrix;
 mod mesh;
@@ -114,6 +124,7 @@ mod trace;
 pub use birth::SmallCycle;
 pub use collocation::{CycleProblem, MAX_BLOCK};
 pub use cycle::{Cycle, CycleError};
+pub use explore::{CycleOrigin, Explored, Follow, FollowedCycles, explore};
 pub use floquet::Multiplier;
 pub use matrix::CycleMatrix;
 pub use point::CyclePoint;

@@ -2,6 +2,7 @@
 
 use super::collocation::{CycleProblem, DOUBLING, PERIOD, TORUS};
 use super::cycle::{Cycle, CycleError};
+use super::doubling::add_forms;
 use super::matrix::CycleMatrix;
 use super::mesh::Orbit;
 use super::point::{CyclePoint, Finer, columns, finer, observe};
@@ -17,18 +18,8 @@ use std::ops::ControlFlow;
 
 /// Cosine between the orbit's derivative and the reference's below which the reference is renewed.
 const ALIGNED: f64 = 0.8;
-/// The same below which the orbit is that of the other side of an equilibrium.
-const OPPOSITE: f64 = -0.5;
 /// Largest correction, in the scaled metric, on going over to another mesh.
 const OVER: f64 = 1e-2;
-/// Amplitude, relative to the largest of the branch, at which shrinking cycles are taken to vanish, and
-/// the same where the trace cannot go on.
-const VANISHED: [f64; 2] = [0.01, 0.2];
-/// Change of the parameter, relative to its range, while the period grows by a factor e, below which the
-/// parameter has come to rest.
-const RESTS: f64 = 1e-6;
-/// Relative difference of periods and extrema of the same cycle on two meshes.
-const SAME: f64 = 1e-6;
 /// What rounding leaves of the parameter at a special point, relative to its value and its range.
 const ROUNDING: f64 = 1e-13;
 /// By how much errors at the neighbours of a branch point are exceeded there.
@@ -129,25 +120,25 @@ enum Outcome<'a, P: Problem + ?Sized> {
     Restart(Box<(CycleProblem<'a, P>, Baton)>),
 }
 
-struct Run<'a, 's, P: Problem + ?Sized> {
-    problem: &'a P,
-    which: ParamId,
+pub(super) struct Run<'a, 's, P: Problem + ?Sized> {
+    pub(super) problem: &'a P,
+    pub(super) which: ParamId,
     settings: Settings,
-    cycle_settings: &'s CycleSettings,
+    pub(super) cycle_settings: &'s CycleSettings,
     watches: Vec<Watch>,
-    points: Vec<Point>,
-    cycles: Vec<CyclePoint>,
+    pub(super) points: Vec<Point>,
+    pub(super) cycles: Vec<CyclePoint>,
     /// What halving the intervals moves at each point, in the metric.
     moved: Vec<Option<f64>>,
     events: Vec<Event>,
     event_errors: Vec<Option<f64>>,
     doubts: Vec<Doubt>,
     statistics: Statistics,
-    range: f64,
+    pub(super) range: f64,
     base_s: f64,
     /// Largest amplitude and shortest period so far.
-    largest: f64,
-    shortest: f64,
+    pub(super) largest: f64,
+    pub(super) shortest: f64,
     interrupted: bool,
 }
 
@@ -173,6 +164,10 @@ impl<'a, P: Problem + ?Sized> Run<'a, '_, P> {
                 break;
             }
             let event = point.event.and_then(|e| tracer.events().get(e)).cloned();
+            if let Some(stop) = event.as_ref().and_then(|e| self.halved(equations, &point, e)) {
+                ended = Some(stop);
+                break;
+            }
             self.record(equations, point, event, start);
             count += 1;
             ended = self.unbounded().or_else(|| self.closed());
@@ -259,6 +254,8 @@ impl<'a, P: Problem + ?Sized> Run<'a, '_, P> {
         at.u = next.unknowns(&cycle);
         (at.p, at.tp, at.tu) = (baton.at.p, baton.at.tp, tu);
         baton.at = at;
+        // a branch that begins at an equilibrium is long beside its first cycle
+        baton.measure_by(next.unit * cycle.period);
         Tracer::resume(&next, self.which, start, &baton, self.settings.clone(), OVER).ok()?;
         Some(Box::new((next, baton)))
     }
@@ -333,113 +330,6 @@ impl<'a, P: Problem + ?Sized> Run<'a, '_, P> {
         self.events.push(event);
     }
 
-    /// The end of the trace where the cycles have shrunk to an equilibrium.
-    fn vanished(
-        &self,
-        equations: &CycleProblem<'a, P>,
-        point: &Point,
-        tracer: &Tracer<'_, CycleMatrix>,
-    ) -> Option<Stop> {
-        let mut p = vec![0.0; self.problem.parameters().len()];
-        p[self.which.0] = point.p;
-        let amplitude = equations.cycle(&point.u, &p).amplitude();
-        let name = self.problem.parameters()[self.which.0].name;
-        let singular = point
-            .event
-            .and_then(|e| tracer.events().get(e))
-            .is_some_and(|event| event.kind == EventKind::BranchPoint);
-        let before = self.cycles.last()?.cycle.amplitude();
-        if singular && amplitude < VANISHED[0] * self.largest {
-            let detail = format!("the cycles shrink to an equilibrium at {name} = {:.10}", point.p);
-            return Some(Stop { reason: StopReason::CyclesVanish, detail });
-        }
-        // beyond the equilibrium the orbit is half a period behind
-        let shrinks = match &self.cycles[..] {
-            [.., a, b] => b.cycle.amplitude() < a.cycle.amplitude(),
-            _ => false,
-        };
-        let beyond = shrinks && equations.alignment(&point.u) < OPPOSITE;
-        if beyond || amplitude < VANISHED[0] * self.largest && amplitude < before {
-            return Some(self.vanishing());
-        }
-        None
-    }
-
-    /// What to say of cycles that vanish.
-    fn vanishing(&self) -> Stop {
-        let name = self.problem.parameters()[self.which.0].name;
-        let mut detail = "the cycles shrink to an equilibrium".to_owned();
-        if let [.., a, b] = &self.cycles[..] {
-            // the parameter varies as the square of the amplitude
-            let (x, y) = (a.cycle.amplitude().powi(2), b.cycle.amplitude().powi(2));
-            let [p, q] = [a, b].map(|c| c.cycle.parameters[self.which.0]);
-            let at = q - (p - q) * y / (x - y);
-            if at.is_finite() {
-                detail = format!("{detail}, by extrapolation near {name} = {at:.6}");
-            }
-        }
-        Stop { reason: StopReason::CyclesVanish, detail }
-    }
-
-    /// A trace that cannot go on where the cycles are about to vanish.
-    fn near_vanishing(&self, stop: Stop) -> Stop {
-        let stuck = matches!(stop.reason, StopReason::StepTooSmall | StopReason::BranchesTooClose);
-        let [.., a, b] = &self.cycles[..] else { return stop };
-        let (x, y) = (a.cycle.amplitude(), b.cycle.amplitude());
-        if !(stuck && y < x && y < VANISHED[1] * self.largest) {
-            return stop;
-        }
-        let vanishing = self.vanishing();
-        Stop { detail: format!("{}; {}", vanishing.detail, stop.detail), ..vanishing }
-    }
-
-    /// The end of the trace where the period grows without bound.
-    fn unbounded(&self) -> Option<Stop> {
-        let [.., a, b] = &self.cycles[..] else { return None };
-        let [t, u] = [a, b].map(|c| c.cycle.period);
-        let [p, q] = [a, b].map(|c| c.cycle.parameters[self.which.0]);
-        let growing = u > t && u > self.cycle_settings.period_growth * self.shortest;
-        let rate = (q - p).abs() / (u / t).ln();
-        if !(growing && rate < RESTS * self.range) {
-            return None;
-        }
-        let name = self.problem.parameters()[self.which.0].name;
-        let detail = format!(
-            "the period is {u:.6} and grows without bound while {name} comes to rest near {q:.8}, where it has \
-             changed by {:.1e} since the period was {t:.6}: the cycles approach a homoclinic or heteroclinic \
-             orbit, to which they are not followed",
-            (q - p).abs()
-        );
-        Some(Stop { reason: StopReason::PeriodUnbounded, detail })
-    }
-
-    /// The end of the trace where the branch has come back to its start in the same direction: at the
-    /// start's parameter the cycle is the first one.
-    fn closed(&self) -> Option<Stop> {
-        let (Some(first), [.., a, b]) = (self.points.first(), &self.points[..]) else {
-            return None;
-        };
-        let passes = (a.p - first.p) * (b.p - first.p) <= 0.0 && a.p != b.p;
-        if self.points.len() < 5 || !passes || first.dp_ds * b.dp_ds <= 0.0 {
-            return None;
-        }
-        let mut cycle = self.cycles.last()?.cycle.clone();
-        cycle.parameters[self.which.0] = first.p;
-        let again = cycle.solved(self.problem).ok()?;
-        let observed = observe(self.problem, &again).ok()?;
-        let old = &self.cycles.first()?.cycle;
-        let same = |x: f64, y: f64, size: f64| (x - y).abs() <= SAME * size;
-        let size = old.amplitude()
-            + first.observables.iter().skip(1).fold(0.0, |m: f64, x| m.max(x.abs()));
-        let is_same = same(again.period, old.period, old.period)
-            && observed
-                .iter()
-                .zip(first.observables.iter().skip(1))
-                .all(|(x, y)| same(*x, *y, size));
-        let detail = "the branch is a closed loop".to_owned();
-        is_same.then_some(Stop { reason: StopReason::ClosedLoop, detail })
-    }
-
     /// The branch, with the counts beside its events.
     fn finish(mut self, parameter: &str, p: &[f64], stopped: Stop) -> CycleBranch {
         let regular: Vec<usize> = (0..self.points.len())
@@ -466,7 +356,7 @@ impl<'a, P: Problem + ?Sized> Run<'a, '_, P> {
         }
         let mut observables = vec![PERIOD.to_owned()];
         observables.extend(columns(self.problem));
-        CycleBranch {
+        let mut found = CycleBranch {
             branch: Branch {
                 parameter: parameter.to_owned(),
                 parameters: p.to_vec(),
@@ -480,7 +370,9 @@ impl<'a, P: Problem + ?Sized> Run<'a, '_, P> {
             },
             cycles: self.cycles,
             event_errors: self.event_errors,
-        }
+        };
+        add_forms(self.problem, self.which, &mut found);
+        found
     }
 
     /// Compares the counts at two successive regular points with the events between them.

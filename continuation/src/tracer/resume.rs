@@ -17,6 +17,13 @@ pub(crate) struct Baton {
     range: f64,
 }
 
+impl Baton {
+    /// Has the unknowns measured by this length, if it is longer than the one so far.
+    pub(crate) fn measure_by(&mut self, unknowns: f64) {
+        self.weights.unknowns = self.weights.unknowns.max(unknowns);
+    }
+}
+
 impl<'a, J: Matrix> Tracer<'a, J> {
     /// Where the trace stands, and by which lengths it measures.
     pub(crate) fn baton(&self, range: f64) -> Baton {
@@ -51,6 +58,8 @@ impl<'a, J: Matrix> Tracer<'a, J> {
         let mut tracer =
             Self::set_up(core, start, p, settings, baton.range).map_err(|_| Refusal::Singular)?;
         tracer.size = baton.size;
+        // the same step, in the lengths by which it is measured now
+        tracer.size.h *= norm;
         Ok(tracer)
     }
 

@@ -3,6 +3,7 @@
 
 mod embedded;
 mod exact;
+mod explore;
 mod invariance;
 mod starts;
 mod systems;
