@@ -20,6 +20,7 @@ pub mod ab;
 pub mod abc;
 pub mod arch;
 pub mod bratu;
+pub mod brusselator;
 pub mod chan;
 pub mod co_oxidation;
 pub mod crossings;
@@ -27,15 +28,20 @@ pub mod cusp;
 mod entry;
 pub mod enz;
 pub mod euler_column;
+pub mod fitzhugh_nagumo;
 mod grid;
 pub mod jkr;
+pub mod lorenz;
 pub mod mittelmann;
 pub mod ode;
 pub mod plp;
 pub mod pp2;
+pub mod ppp;
 pub mod pressurised_sphere;
+pub mod roessler;
 pub mod snaking;
 pub mod swift_hohenberg;
+pub mod van_der_pol;
 mod visit;
 
 pub use entry::{Allowed, Constant, Elements, Entry, Known, On, ProblemError, Request};
@@ -80,24 +86,30 @@ macro_rules! entries {
     };
 }
 
-entries! { 19:
+entries! { 25:
     Ab, ab::ENTRY, ab::visit;
     Abc, abc::ENTRY, abc::visit;
     Bratu, bratu::ENTRY, bratu::visit;
+    Brusselator, brusselator::ENTRY, brusselator::visit;
     Chan, chan::ENTRY, chan::visit;
     CoOxidation, co_oxidation::ENTRY, co_oxidation::visit;
     Cusp, cusp::ENTRY, cusp::visit;
     Enz, enz::ENTRY, enz::visit;
     EulerColumn, euler_column::ENTRY, euler_column::visit;
+    FitzHughNagumo, fitzhugh_nagumo::ENTRY, fitzhugh_nagumo::visit;
     JkrGrip, jkr::GRIP_ENTRY, jkr::grip;
     JkrLoad, jkr::LOAD_ENTRY, jkr::load;
+    Lorenz, lorenz::ENTRY, lorenz::visit;
     Mittelmann, mittelmann::ENTRY, mittelmann::visit;
     Pitchfork, crossings::PITCHFORK, crossings::pitchfork;
     Plp, plp::ENTRY, plp::visit;
     Pp2, pp2::ENTRY, pp2::visit;
+    Ppp, ppp::ENTRY, ppp::visit;
     PressurisedSphere, pressurised_sphere::ENTRY, pressurised_sphere::visit;
+    Roessler, roessler::ENTRY, roessler::visit;
     ShallowArch, arch::ENTRY, arch::visit;
     SwiftHohenberg, swift_hohenberg::ENTRY, swift_hohenberg::visit;
     Snaking, snaking::ENTRY, snaking::visit;
     Transcritical, crossings::TRANSCRITICAL, crossings::transcritical;
+    VanDerPol, van_der_pol::ENTRY, van_der_pol::visit;
 }
