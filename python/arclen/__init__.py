@@ -31,6 +31,7 @@ from ._command import main
 from ._definition import InterruptedWarning
 from ._figures import Figures, figure
 from ._fit import Estimate, Fit, Plan, fit, plan
+from ._orbits import Orbits
 from ._problem import Problem
 from ._study import CaseBranch, Cycle, Map, cycle, diagram, map, trace
 from ._sweep import Study, study
@@ -48,6 +49,7 @@ __all__ = [
     "Fit",
     "InterruptedWarning",
     "Map",
+    "Orbits",
     "Plan",
     "Point",
     "Problem",

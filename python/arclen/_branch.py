@@ -130,7 +130,9 @@ class Event(Point):
         else:
             what = None
         self.criticality: str | None = form.pop("criticality", None)
-        self.type: str | None = form.pop("shape", self.criticality if what == "hopf" else None)
+        self.type: str | None = form.pop(
+            "shape", self.criticality if what in ("hopf", "doubling") else None
+        )
         form.pop("traced", None)
         self.directions: list[tuple[np.ndarray, float]] = [
             (np.asarray(one["du"]), float(one["dp"])) for one in form.pop("leaving", [])

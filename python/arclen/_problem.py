@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _convert as convert
 from ._branch import Branch, Diagram, Event, Point, Solutions
 from ._definition import Definition
+
+if TYPE_CHECKING:
+    from ._orbits import Orbits
 
 
 class Problem(Definition):
@@ -253,6 +256,36 @@ class Problem(Definition):
         raw, number = event.branch._raw, event.number
         names = [name for name in self.parameters if name != first]
         return self._compute(u, p, lambda engine: engine.curve(raw, number, second, *run), names)
+
+    def orbits(self, event: Event, **settings: Any) -> Orbits:
+        """The periodic orbits that leave a special point.
+
+        Parameters
+        ----------
+        event : Event
+            A Hopf point of a branch of this problem; or a period doubling or branch point of `Orbits`.
+        direction, forward : int, bool, optional
+            At a branch point, which of ``event.directions``, and along it or against it.
+        degree : int, optional
+            Degree of the polynomials, 2 to 7, by default 4.
+        intervals, max_intervals : int, optional
+            Fewest and most intervals of the mesh, by default 30 and 400.
+        accuracy : float, optional
+            Relative error aimed at, by default 1e-10; the mesh follows it.
+        adapt_every, period_growth, check : optional
+            Points between meshes; growth of the period at which an approach to a homoclinic orbit ends the
+            trace; whether errors are estimated, without which no count is certain.
+        **settings
+            Those of `trace`; without ``increasing`` the branch goes away from the special point. What can be
+            watched is ``"period"``.
+
+        Returns
+        -------
+        Orbits
+        """
+        from ._orbits import follow
+
+        return follow(self, event, settings)
 
     def diagram(
         self,

@@ -24,20 +24,23 @@ pyo3::create_exception!(
 );
 
 /// An error of the engine; those of input are as good as others, for they all say what is wrong.
-fn engine(error: impl std::fmt::Display) -> String {
+pub(crate) fn engine(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
 /// What a computation gave, and the exception that ended it.
-type Outcome<T> = (Option<T>, Option<PyErr>);
+pub(crate) type Outcome<T> = (Option<T>, Option<PyErr>);
 
 /// What a trace is told by the Python side.
-struct Request {
-    settings: Settings,
-    watches: Vec<Watch>,
+pub(crate) struct Request {
+    pub(crate) settings: Settings,
+    pub(crate) watches: Vec<Watch>,
 }
 
-fn request(settings: &Bound<'_, PyAny>, watches: &Bound<'_, PyAny>) -> PyResult<Request> {
+pub(crate) fn request(
+    settings: &Bound<'_, PyAny>,
+    watches: &Bound<'_, PyAny>,
+) -> PyResult<Request> {
     let settings = read(settings, "the settings")?;
     Ok(Request { settings, watches: read(watches, "the watches")? })
 }
@@ -54,7 +57,7 @@ pub(crate) struct Engine {
 
 impl Engine {
     /// Runs `work` without the interpreter's lock.
-    fn run<T: Send>(
+    pub(crate) fn run<T: Send>(
         &self,
         py: Python<'_>,
         work: impl FnOnce(&UserProblem<'_>) -> Result<T, String> + Send,
@@ -93,7 +96,7 @@ impl Engine {
 }
 
 /// Tells the user's callback where a trace stands; it may stop it by returning True.
-fn report(
+pub(crate) fn report(
     problem: &UserProblem<'_>,
     progress: Option<&Py<PyAny>>,
     at: &Progress,
@@ -112,7 +115,7 @@ fn report(
     }
 }
 
-fn event_of(branch: &Branch, event: usize) -> Result<&Event, String> {
+pub(crate) fn event_of(branch: &Branch, event: usize) -> Result<&Event, String> {
     branch.events.get(event).ok_or_else(|| format!("the branch has no special point {event}"))
 }
 

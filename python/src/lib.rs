@@ -12,6 +12,7 @@ mod engine;
 mod figures;
 mod fits;
 mod names;
+mod orbits;
 mod problem;
 mod storage;
 mod studies;
@@ -133,6 +134,8 @@ fn _arclen(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(make_engine, module)?)?;
     module.add_class::<Engine>()?;
     module.add_class::<RawBranch>()?;
+    module.add_class::<orbits::RawOrbits>()?;
+    module.add_function(wrap_pyfunction!(orbits::follow_orbits, module)?)?;
     module.add_function(wrap_pyfunction!(studies::find_case, module)?)?;
     module.add_function(wrap_pyfunction!(studies::parse_case, module)?)?;
     module.add_function(wrap_pyfunction!(studies::list_cases, module)?)?;
