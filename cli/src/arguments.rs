@@ -29,6 +29,8 @@ pub(crate) enum Command {
     Trace(TraceArguments),
     /// Follow a branch and all that leave it; write them as one diagram
     Diagram(DiagramArguments),
+    /// Follow the periodic orbits that leave Hopf points; write them, what is known of them and pictures
+    Orbits(OrbitsArguments),
     /// Close and open the plates once, with the jumps between stable states; write the path, the energy
     /// it dissipates and pictures
     Cycle(CycleArguments),
@@ -179,6 +181,33 @@ impl DiagramArguments {
     /// The case, with the depth among its overrides.
     pub(crate) fn overrides(&self) -> Vec<Override> {
         let depth = short("--depth", "diagram.depth", self.depth.as_deref());
+        self.case.overrides().into_iter().chain(depth).collect()
+    }
+}
+
+/// Which case, and which of its periodic orbits.
+#[derive(Debug, Args)]
+pub(crate) struct OrbitsArguments {
+    /// Which case.
+    #[command(flatten)]
+    pub(crate) case: CaseArguments,
+    /// Only the cycles that leave this Hopf point, counted from 0 in the order of the branches
+    /// [default: all]
+    #[arg(long, value_name = "K")]
+    pub(crate) hopf: Option<usize>,
+    /// Most period doublings and branch points between a branch of cycles and its Hopf point, as
+    /// --set diagram.cycle_depth=N
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) depth: Option<String>,
+    /// What to do with the results.
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
+}
+
+impl OrbitsArguments {
+    /// The case, with the depth among its overrides.
+    pub(crate) fn overrides(&self) -> Vec<Override> {
+        let depth = short("--depth", "diagram.cycle_depth", self.depth.as_deref());
         self.case.overrides().into_iter().chain(depth).collect()
     }
 }

@@ -39,6 +39,8 @@ pub(super) enum Level {
     Depth(usize),
     /// States that are not their own mirror images.
     Asymmetric,
+    /// Periodic orbits, with so many special points between them and the equilibria.
+    Cycles(usize),
 }
 
 /// Branches of a diagram.
@@ -56,10 +58,12 @@ pub(super) fn branches(
     let mut levels: Vec<Level> = curves.iter().map(|(level, _)| *level).collect();
     levels.sort_unstable();
     levels.dedup();
+    let steady = levels.iter().filter(|level| !matches!(level, Level::Cycles(_))).count();
     for level in &levels {
         let color = match level {
             Level::Depth(depth) => of_state(*depth),
-            Level::Asymmetric => of_state(levels.len() - 1),
+            Level::Asymmetric => of_state(steady - 1),
+            Level::Cycles(depth) => of_state(steady.max(1) + depth - 1),
         };
         let here = curves.iter().filter(|(own, _)| own == level);
         // the first branch on top
@@ -70,6 +74,8 @@ pub(super) fn branches(
                 Level::Depth(0) => "first branch".to_owned(),
                 Level::Depth(depth) => format!("depth {depth}"),
                 Level::Asymmetric => "asymmetric about the equator".to_owned(),
+                Level::Cycles(1) => "cycles".to_owned(),
+                Level::Cycles(depth) => format!("cycles, depth {}", depth - 1),
             };
             entries.push(Entry::Line { color, stroke: Stroke::Solid, label });
         }
@@ -278,7 +284,7 @@ pub(super) fn curve_lines(curve: &Curve, color: Color, units: (f64, f64)) -> Vec
 }
 
 /// A curve, but for its points, that shows one state.
-fn of_one_state(stability: Stability, points: usize) -> Curve {
+pub(super) fn of_one_state(stability: Stability, points: usize) -> Curve {
     Curve {
         unstable: vec![stability == Stability::Unstable; points],
         asymmetric: vec![stability == Stability::Asymmetric; points],
@@ -286,7 +292,7 @@ fn of_one_state(stability: Stability, points: usize) -> Curve {
     }
 }
 
-fn state_entry(at: usize, label: &str, stability: Stability) -> Entry {
+pub(super) fn state_entry(at: usize, label: &str, stability: Stability) -> Entry {
     let words = match stability {
         Stability::Stable => "",
         Stability::Asymmetric => ", unstable to asymmetric modes",

@@ -14,6 +14,7 @@ pub mod fit;
 mod heading;
 mod label;
 mod map;
+mod orbits;
 mod page;
 mod palette;
 mod path;
@@ -30,6 +31,7 @@ pub use cycle::{LOOP, draw_cycle};
 pub use heading::titled;
 pub use label::labels;
 pub use map::{MAP, draw_map};
+pub use orbits::{ORBITS, PERIOD, draw_orbits};
 pub use page::{REPORT, cycle_report, report};
 pub use phase::{PHASE, draw_phase};
 pub use physical::{PHYSICAL, draw_physical};
@@ -59,14 +61,20 @@ pub const DIAGRAM: &str = "diagram.svg";
 /// # Errors
 /// When the drawing library fails.
 pub fn draw_diagram(case: &ResolvedCase, result: &DiagramResult) -> Result<String, DrawError> {
-    let level = |branch: &BranchRecord| match branch.is_asymmetric() {
-        true => Level::Asymmetric,
-        false => Level::Depth(branch.depth),
-    };
     let curves: Vec<(Level, &Curve)> =
         result.branches.iter().map(|branch| (level(branch), &branch.curve)).collect();
     let (x, y) = &result.axes;
-    draw::branches(&titled(&result.title(), case), x, y, &curves)
+    let extrema = result.branches.iter().any(|branch| branch.orbits.is_some());
+    let y = if extrema { format!("{y}; of cycles maximum and minimum") } else { y.clone() };
+    draw::branches(&titled(&result.title(), case), x, &y, &curves)
+}
+
+fn level(branch: &BranchRecord) -> Level {
+    match branch.is_asymmetric() {
+        _ if branch.orbits.is_some() => Level::Cycles(branch.depth),
+        true => Level::Asymmetric,
+        false => Level::Depth(branch.depth),
+    }
 }
 
 /// All pictures for which there are data: file name and SVG.

@@ -79,6 +79,8 @@ pub(super) fn form(kind: &str) -> Form {
         "zero-force" => Form::Up,
         "pull-off" => Form::Down,
         "hopf" | "generalised-hopf" => Form::Ring,
+        "period-doubling" => Form::Up,
+        "neimark-sacker" => Form::Down,
         "cusp" => Form::Up,
         "bogdanov-takens" => Form::Square,
         "zero-hopf" => Form::Diamond,

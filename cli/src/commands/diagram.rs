@@ -12,7 +12,7 @@ use pictures::{REPORT, report};
 use std::path::Path;
 use study::case::ResolvedCase;
 use study::record::TraceResult;
-use study::record::{DiagramResult, branch_csv, diagram_json, diagram_summary};
+use study::record::{DiagramResult, diagram_json, diagram_summary};
 use study::run::{Keep, KeepNothing, Saved, run_diagram};
 use study::store::{Checkpoint, Folder};
 
@@ -31,8 +31,11 @@ pub(super) fn diagram(arguments: &DiagramArguments, listen: &Listen<'_>) -> Exit
         terminal::error(&error.advised());
         Exit::BadInput
     };
+    let orbits = [pictures::PERIOD, super::orbits::TABLES];
     let names: Vec<&str> = [DIAGRAM, CASE, pictures::DIAGRAM, REPORT, TABLES]
         .into_iter()
+        .chain(orbits)
+        .chain(pictures::ORBITS)
         .chain(Checkpoint::NAMES)
         .collect();
     let folder = match arguments.output.folder(&case.name, &names, &arguments.case.inputs()) {
@@ -138,18 +141,13 @@ fn deliver(
     let mut made = Made::json(DIAGRAM, diagram_json(result));
     if folder.is_some() {
         made.file(CASE, case.to_toml());
-        for branch in &result.branches {
-            made.attempt(branch.csv(), branch_csv(&branch.trace.table));
-        }
+        super::orbits::add_files(&mut made, case, result, !arguments.output.no_pictures);
         if arguments.report {
             let label =
                 |id: usize| if id == 0 { "first branch".into() } else { format!("branch {id}") };
             let curves: Vec<(String, &TraceResult)> =
                 result.branches.iter().map(|branch| (label(branch.id), &branch.trace)).collect();
             made.attempt(REPORT, report(&result.case, &result.stopped_detail, &curves));
-        }
-        if !arguments.output.no_pictures && result.has_curves() {
-            made.attempt(pictures::DIAGRAM, pictures::draw_diagram(case, result));
         }
     }
     let complete = result.followed;

@@ -10,6 +10,7 @@ mod figure;
 mod fit;
 mod list;
 mod map;
+mod orbits;
 mod progress;
 mod sweep;
 mod trace;
@@ -30,6 +31,7 @@ pub(crate) fn dispatch(arguments: &Arguments, listen: &Listen<'_>) -> Exit {
         Command::Explore(arguments) => explore::explore(arguments, listen),
         Command::Fit(arguments) => fit::fit(arguments),
         Command::Figure(arguments) => figure::figure(arguments, listen),
+        Command::Orbits(arguments) => orbits::orbits(arguments, listen),
         Command::Cycle(arguments) => cycle::cycle(arguments, listen),
         Command::Check(arguments) => check::check(arguments),
         Command::Map(arguments) => map::map(arguments, listen),

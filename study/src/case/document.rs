@@ -50,6 +50,8 @@ pub(crate) enum Value {
     Integer(Option<i64>),
     /// A float, NaN and infinity included.
     Real(f64),
+    /// `true` or `false`.
+    Flag(bool),
     /// A table.
     Table(Table),
     /// An array.
@@ -65,6 +67,7 @@ impl Value {
             Value::Text(_) => "a string",
             Value::Integer(_) => "an integer",
             Value::Real(_) => "a float",
+            Value::Flag(_) => "a boolean",
             Value::Table(_) => "a table",
             Value::Array(_) => "an array",
             Value::Other(name) => name,
@@ -187,7 +190,7 @@ fn convert(
             Value::Integer(i64::from_str_radix(integer.as_str(), integer.radix()).ok())
         }
         DeValue::Float(float) => Value::Real(float.as_str().parse().unwrap_or(f64::NAN)),
-        DeValue::Boolean(_) => Value::Other("a boolean"),
+        DeValue::Boolean(value) => Value::Flag(*value),
         DeValue::Datetime(_) => Value::Other("a date"),
         DeValue::Array(items) => Value::Array(
             items

@@ -58,6 +58,8 @@ pub enum Kind {
     Quantity(Dimension, Range),
     /// One of a few words.
     Word(&'static [&'static str]),
+    /// Yes or no: `true` or `false`, without quotes.
+    Flag,
 }
 
 /// What a key is where a file does not say it.
@@ -72,6 +74,8 @@ pub enum Absent {
     Count(usize),
     /// A word.
     Word(&'static str),
+    /// Yes or no.
+    Flag(bool),
     /// Something that depends on other keys, in words.
     Other(&'static str),
 }
@@ -96,7 +100,7 @@ impl Key {
     pub(crate) fn range(&self) -> Range {
         match self.kind {
             Kind::Number(range) | Kind::Quantity(_, range) => range,
-            Kind::Count { .. } | Kind::Word(_) => ANY,
+            Kind::Count { .. } | Kind::Word(_) | Kind::Flag => ANY,
         }
     }
 
@@ -370,8 +374,25 @@ pub(crate) const SEARCH: Key = key(
     Absent::Word("near-bifurcations"),
     "Where disconnected branches are sought",
 );
+/// `diagram.cycles`.
+pub(crate) const CYCLES: Key = key(
+    "cycles",
+    Kind::Flag,
+    "",
+    Absent::Flag(false),
+    "Whether the periodic orbits that leave Hopf points are followed",
+);
+/// `diagram.cycle_depth`.
+pub(crate) const CYCLE_DEPTH: Key = count(
+    "cycle_depth",
+    0,
+    20,
+    Absent::Count(1),
+    "Most period doublings and branch points between a branch of cycles and its Hopf point",
+);
 /// The table `[diagram]`.
-pub(crate) const DIAGRAM: [Key; 5] = [DEPTH, MAX_BRANCHES, DIAGRAM_FROM, DIAGRAM_TO, SEARCH];
+pub(crate) const DIAGRAM: [Key; 7] =
+    [DEPTH, MAX_BRANCHES, DIAGRAM_FROM, DIAGRAM_TO, SEARCH, CYCLES, CYCLE_DEPTH];
 
 /// `map.from`.
 pub(crate) const MAP_FROM: Key = number(
@@ -469,11 +490,13 @@ pub fn markdown() -> String {
                     format!("{dimension}, such as \"{}\"", dimension.example()),
                 ),
                 Kind::Word(words) => (words.join(", "), String::new()),
+                Kind::Flag => ("true, false".to_owned(), String::new()),
             };
             let default = match key.default {
                 Required => "required".to_owned(),
                 Absent::Number(value) => value.to_string(),
                 Absent::Count(value) => value.to_string(),
+                Absent::Flag(value) => value.to_string(),
                 Absent::Word(word) | Other(word) => word.to_owned(),
             };
             let _ =
@@ -499,6 +522,7 @@ mod tests {
                         (least..=most).contains(&(value as i64))
                     }
                     (Absent::Word(word), Kind::Word(words)) => words.contains(&word),
+                    (Absent::Flag(_), Kind::Flag) => true,
                     (Absent::Word(text), Kind::Quantity(dimension, range)) => {
                         crate::units::parse(text, dimension).is_ok_and(|q| range.contains(q.si))
                     }

@@ -259,11 +259,22 @@ pub struct DiagramCase {
     pub within: Option<(f64, f64)>,
     /// Whether disconnected branches are sought beside near-bifurcations.
     pub search: bool,
+    /// Whether the periodic orbits that leave Hopf points are followed.
+    pub cycles: bool,
+    /// Most period doublings and branch points between a branch of cycles and its Hopf point.
+    pub cycle_depth: usize,
 }
 
 impl Default for DiagramCase {
     fn default() -> Self {
-        DiagramCase { depth: 2, max_branches: 1000, within: None, search: true }
+        DiagramCase {
+            depth: 2,
+            max_branches: 1000,
+            within: None,
+            search: true,
+            cycles: false,
+            cycle_depth: 1,
+        }
     }
 }
 

@@ -204,6 +204,20 @@ impl Reader {
         }
     }
 
+    /// `true` or `false`, if it is there.
+    pub(crate) fn flag(&self, section: Section<'_>, key: &str) -> Option<bool> {
+        let node = section.get(key)?;
+        if let Value::Flag(value) = node.value {
+            return Some(value);
+        }
+        let hint = match node.value {
+            Value::Text(_) => "; write it without quotes",
+            _ => "",
+        };
+        self.wrong_type(section, key, node, "true or false", hint);
+        None
+    }
+
     /// A string, if it is there.
     pub(crate) fn text<'a>(&self, section: Section<'a>, key: &str) -> Option<&'a str> {
         let node = section.get(key)?;

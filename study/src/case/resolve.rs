@@ -498,7 +498,10 @@ impl<'a> Resolver<'a> {
             None => default.search,
             Some(_) => self.word(section, &keys::SEARCH)? == "near-bifurcations",
         };
-        Some(DiagramCase { depth: depth?, max_branches: max_branches?, within, search })
+        let cycles = self.flag(section, &keys::CYCLES)?;
+        let cycle_depth = self.count(section, &keys::CYCLE_DEPTH)?;
+        let (depth, max_branches) = (depth?, max_branches?);
+        Some(DiagramCase { depth, max_branches, within, search, cycles, cycle_depth })
     }
 
     fn map(&self) -> Option<MapCase> {
@@ -543,6 +546,14 @@ impl<'a> Resolver<'a> {
                 let (least, most) = key.bounds();
                 self.reader.count(section, key.name, least, most)
             }
+        }
+    }
+
+    /// Yes or no, with a default; `None` only when what is given is neither.
+    fn flag(&self, section: Section<'_>, key: &Key) -> Option<bool> {
+        match (section.get(key.name), key.default) {
+            (None, Absent::Flag(default)) => Some(default),
+            _ => self.reader.flag(section, key.name),
         }
     }
 

@@ -170,6 +170,11 @@ fn diagram(out: &mut Lines, diagram: &DiagramCase) {
         out.number("from", low);
         out.number("to", high);
     }
+    let default = DiagramCase::default();
+    if (diagram.cycles, diagram.cycle_depth) != (default.cycles, default.cycle_depth) {
+        out.line(&format!("cycles = {}", diagram.cycles));
+        out.count("cycle_depth", diagram.cycle_depth);
+    }
 }
 
 fn map(out: &mut Lines, map: MapCase) {

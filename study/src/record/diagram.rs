@@ -1,6 +1,7 @@
 //! `diagram.json`: the branches of a diagram, how they hang together, and the table for people.
 
 use super::events::{EventOf, ResolutionOf, StabilityOf};
+use super::orbits::{CyclesRecord, OrbitsRecord};
 use super::result::{ResolutionRecord, StabilityRecord, TraceResult};
 use super::summary::{aligned, count};
 use super::view::Curve;
@@ -114,8 +115,10 @@ pub struct BranchRecord {
     pub near: Vec<NearRecord>,
     /// The branch itself.
     pub trace: TraceResult,
-    /// What is drawn of it.
+    /// What is drawn of it; of cycles the maximum and the minimum.
     pub curve: Curve,
+    /// Of a branch of periodic orbits, what it has beyond its points.
+    pub orbits: Option<OrbitsRecord>,
 }
 
 impl BranchRecord {
@@ -123,6 +126,11 @@ impl BranchRecord {
     pub fn csv(&self) -> String {
         let kind = if self.is_asymmetric() { "-asymmetric" } else { "" };
         format!("branch-{}{kind}.csv", self.id)
+    }
+
+    /// The file with some of its cycles over time.
+    pub fn orbit_csv(&self) -> String {
+        format!("orbit-{}.csv", self.id)
     }
 
     /// Whether its states are not their own mirror images.
@@ -154,6 +162,8 @@ pub struct DiagramResult {
     pub seconds: f64,
     /// Labels of the picture's axes.
     pub axes: (String, String),
+    /// What was done about periodic orbits; `None` where there are no Hopf points.
+    pub cycles: Option<CyclesRecord>,
 }
 
 impl DiagramResult {
@@ -213,6 +223,9 @@ impl Serialize for DiagramResult {
         map.serialize_entry("joints", &joints)?;
         map.serialize_entry("stopped_because", self.stopped_because)?;
         map.serialize_entry("stopped_detail", &self.stopped_detail)?;
+        if let Some(cycles) = &self.cycles {
+            map.serialize_entry("cycles", cycles)?;
+        }
         map.serialize_entry("points", &self.points())?;
         map.serialize_entry("certified", &self.certified())?;
         if let Some(stability) = &self.stability() {
@@ -238,11 +251,20 @@ impl Serialize for BranchOf<'_> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("id", id)?;
         map.serialize_entry("from", from)?;
+        if self.0.orbits.is_some() {
+            map.serialize_entry("kind", "cycles")?;
+        }
         map.serialize_entry("depth", depth)?;
         if let Some(symmetry) = symmetry {
             map.serialize_entry("symmetry", symmetry.name())?;
         }
         map.serialize_entry("csv", &self.0.csv())?;
+        if let Some(orbits) = &self.0.orbits {
+            map.serialize_entry("orbits_csv", &self.0.orbit_csv())?;
+            if let Some((branch, event)) = orbits.vanishes_at {
+                map.serialize_entry("vanishes_at", &BranchOrigin::Switch { branch, event })?;
+            }
+        }
         map.serialize_entry("events", &events)?;
         if !near.is_empty() {
             let near: Vec<NearOf<'_>> =
@@ -311,7 +333,11 @@ pub fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> String 
             ends = format!("{began}, {ends}");
         }
         rows.push(vec![
-            if one.is_asymmetric() { format!("{} asymmetric", one.id) } else { one.id.to_string() },
+            match &one.orbits {
+                Some(_) => format!("{} cycles", one.id),
+                None if one.is_asymmetric() => format!("{} asymmetric", one.id),
+                None => one.id.to_string(),
+            },
             from,
             one.trace.points.to_string(),
             format!("{low} to {high}"),

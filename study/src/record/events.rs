@@ -1,5 +1,6 @@
 //! `events.json`: special points, why the branch ended, what it cost.
 
+use super::orbits::MultipliersOf;
 use super::result::{EventRecord, MaxwellRecord, ResolutionRecord, StabilityRecord, TraceResult};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -120,6 +121,12 @@ impl Serialize for EventOf<'_> {
             map.serialize_entry("parity", mode.parity)?;
             map.serialize_entry("modes_before", &mode.before)?;
             map.serialize_entry("modes_after", &mode.after)?;
+        }
+        if let Some(cycle) = &event.cycle {
+            map.serialize_entry("period", &cycle.period)?;
+            map.serialize_entry("period_error", &cycle.period_error)?;
+            map.serialize_entry("multipliers", &MultipliersOf(&cycle.multipliers))?;
+            map.serialize_entry("trivial_error", &cycle.trivial_error)?;
         }
         if !event.observables.is_empty() {
             map.serialize_entry("observables", &Named(&event.observables))?;

@@ -6,6 +6,7 @@ mod diagram;
 mod events;
 mod map;
 pub(crate) mod number;
+mod orbits;
 mod outline;
 pub mod phase;
 mod physical;
@@ -25,6 +26,7 @@ pub use diagram::{BranchOrigin, BranchRecord, DiagramResult, NearRecord, Symmetr
 pub use diagram::{diagram_json, diagram_summary};
 pub use events::events_json;
 pub use map::{MapCurve, MapPoint, MapResult, map_json, map_summary};
+pub use orbits::{CycleRecord, CyclesRecord, OrbitRecord, OrbitsRecord};
 pub use outline::{Outline, State};
 pub use physical::{PhysicalUnits, Scales, Unit, physical_table};
 pub use result::{Cell, ContactRow, EventRecord, FormRecord, MaxwellRecord, Table};

@@ -1,6 +1,7 @@
 //! A traced branch as plain numbers, free of solver and problem.
 
 use super::column::{Column, PLATES};
+use super::orbits::CycleRecord;
 use super::outline::State;
 use super::summary::count;
 use super::view::{Curve, Profile, Shape};
@@ -273,6 +274,8 @@ pub struct EventRecord {
     pub u: Vec<f64>,
     /// Eigenvectors to the critical eigenvalues, of length 1: of the branch's own unknowns.
     pub eigenvectors: Vec<Eigenvector>,
+    /// On a branch of periodic orbits, what is known of the cycle.
+    pub cycle: Option<CycleRecord>,
 }
 
 /// A mode without the symmetries of its branch.

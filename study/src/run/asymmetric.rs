@@ -285,6 +285,7 @@ impl Search<'_, '_> {
             near: Vec::new(),
             trace,
             curve,
+            orbits: None,
         });
         self.found.push(branch);
     }

@@ -380,6 +380,7 @@ pub(super) fn event_record(traced: &ContactBranch, event: &Event, loaded: bool) 
         mode: None,
         u: branch.points[event.point].u.clone(),
         eigenvectors: event.critical_modes(),
+        cycle: None,
     }
 }
 

@@ -251,6 +251,7 @@ pub(super) fn result(
             near,
             trace,
             curve,
+            orbits: None,
         }
     });
     let mut branches: Vec<BranchRecord> = branches.collect();
@@ -278,6 +279,7 @@ pub(super) fn result(
         newton_iterations: statistics.newton_iterations,
         seconds,
         axes: (x.to_owned(), y.to_owned()),
+        cycles: None,
     }
 }
 

@@ -41,6 +41,12 @@ pub(super) fn form(branch: &Branch, event: &Event) -> FormRecord {
             lyapunov_error: Some(hopf.lyapunov_error),
             ..base
         },
+        Detail::Doubling(doubling) => FormRecord {
+            kind: word(doubling.criticality),
+            criticality: word(doubling.criticality),
+            curvature: Some(doubling.curvature),
+            ..base
+        },
         _ => base,
     }
 }

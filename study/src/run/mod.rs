@@ -8,6 +8,7 @@ mod family;
 mod form;
 mod general;
 mod map;
+mod orbits;
 mod resolution;
 mod ring_load;
 mod stability;
@@ -130,6 +131,35 @@ pub enum RunError {
         /// What happened.
         detail: shell_contact::device::CycleError,
     },
+    /// A problem without periodic orbits.
+    #[error(
+        "{case}: problem \"{problem}\": its states minimise an energy, and there are no periodic orbits; \
+         take a problem of the catalogue whose special points include a Hopf point"
+    )]
+    NoOrbits {
+        /// Name of the case.
+        case: String,
+        /// Name of the problem.
+        problem: String,
+    },
+    /// A Hopf point that is not there.
+    #[error("{case}: there is no Hopf point number {wanted}; there are {found}, counted from 0")]
+    NoHopfPoint {
+        /// Name of the case.
+        case: String,
+        /// The number asked for.
+        wanted: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// The problem refuses periodic orbits.
+    #[error("{case}: {error}")]
+    Orbits {
+        /// Name of the case.
+        case: String,
+        /// What it says.
+        error: continuation::cycles::CycleError,
+    },
     /// Not even the first point could be computed.
     #[error("{case}: path.start = {start}: {detail}; {remedy}")]
     NoStart {
@@ -207,6 +237,19 @@ pub fn meridian(
     parameter: f64,
 ) -> Result<Option<Outline>, RunError> {
     family::of(&case.problem).meridian(case, u, parameter)
+}
+
+/// Follow the periodic orbits that leave the Hopf points of a case's diagram: all, or the one with a
+/// number, counted from 0 in the order of the branches. Disconnected equilibria are not sought.
+///
+/// # Errors
+/// When there is no result at all; branches that end early are a result.
+pub fn run_orbits(
+    case: &ResolvedCase,
+    hopf: Option<usize>,
+    observer: &mut DiagramObserver<'_>,
+) -> Result<DiagramResult, RunError> {
+    family::of(&case.problem).orbits(case, hopf, observer)
 }
 
 /// Map a case over `key`. The observer hears of every point and may stop the work; what was

@@ -207,6 +207,7 @@ pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> Trac
             mode: None,
             u: point.u.clone(),
             eigenvectors: event.critical_modes(),
+            cycle: None,
         }
     });
     TraceResult {

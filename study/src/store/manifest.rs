@@ -10,7 +10,8 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 /// The JSON of the commands whose results are those of the one case in `case.toml`.
-const OF_A_CASE: [&str; 4] = ["events.json", "diagram.json", "cycle.json", "map.json"];
+const OF_A_CASE: [&str; 5] =
+    ["events.json", "diagram.json", "orbits.json", "cycle.json", "map.json"];
 const CASE: &str = "case.toml";
 
 /// Files of a run, with their checksums.

@@ -55,6 +55,16 @@ pub(super) trait Family {
         Err(RunError::NoPlates { case: case.name.clone(), problem: self.name().to_owned() })
     }
 
+    /// Follows the periodic orbits of a case's branch, if its problem may have any.
+    fn orbits(
+        &self,
+        case: &ResolvedCase,
+        _hopf: Option<usize>,
+        _observer: &mut DiagramObserver<'_>,
+    ) -> Result<DiagramResult, RunError> {
+        Err(RunError::NoOrbits { case: case.name.clone(), problem: self.name().to_owned() })
+    }
+
     /// The second parameter that a key names.
     fn second_parameter(&self, case: &ResolvedCase, key: &str) -> Result<Second, MapError>;
 
