@@ -7,7 +7,7 @@ use super::resolution::Resolved;
 use super::states::of_ring_load;
 use super::{Observer, Progress, RunError, listen, settings};
 use crate::case::{PathCase, ResolvedCase, RingLoadCase};
-use crate::record::view::{Curve, Mark, Shape, Stability};
+use crate::record::view::{Curve, Examined, Mark, Shape, Stability};
 use crate::record::{Cell, EventRecord, Pictures, RING, Table, TraceResult};
 use continuation::diagram::{Diagram, Origin};
 use continuation::{Branch, Point, Settings, TraceError, Tracer, Watch};
@@ -243,6 +243,7 @@ pub(super) fn curve(branch: &Branch) -> Curve {
         x: branch.points.iter().map(|point| point.p).collect(),
         y: (0..branch.points.len()).map(value).collect(),
         unstable: branch.points.iter().map(|p| p.unstable.is_some_and(|n| n > 0)).collect(),
+        examined: Examined::Axisymmetric,
         marks: branch.events.iter().map(mark).collect(),
         ..Curve::default()
     }
