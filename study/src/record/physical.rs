@@ -6,15 +6,15 @@ use crate::case::{ProblemCase, ResolvedCase};
 /// What one dimensionless unit of a shell is, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scales {
-    /// `R0` [m].
+    /// `R0`, in m.
     pub length: f64,
-    /// `sqrt(chi k_b)` [N].
+    /// `sqrt(chi k_b)`, in N.
     pub force: f64,
-    /// `chi / R0` [Pa].
+    /// `chi / R0`, in Pa.
     pub pressure: f64,
-    /// `chi R0²` [J].
+    /// `chi R0²`, in J.
     pub energy: f64,
-    /// `w0 / delta_A` [Pa], the unit of the film's pressure.
+    /// `w0 / delta_A`, in Pa, the unit of the film's pressure.
     pub film_pressure: f64,
 }
 
