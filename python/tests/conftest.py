@@ -1,9 +1,17 @@
 """Problems with known answers."""
 
+import signal
+
 import numpy as np
 import pytest
 
 import arclen
+
+# a shell's job in the background ignores these, and so would all that the tests start
+signal.signal(signal.SIGINT, signal.default_int_handler)
+for name in ("SIGHUP", "SIGTERM"):
+    if hasattr(signal, name):
+        signal.signal(getattr(signal, name), signal.SIG_DFL)
 
 
 def bratu(n):
