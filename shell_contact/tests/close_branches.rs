@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use continuation::{EventKind, Settings, StopReason};
+use continuation::{Detail, EventKind, Settings, StopReason};
 use shell_contact::{
     ContactBranch, ContactProblem, Dimensionless, Law, Mesh, Shell, trace_contact,
 };
@@ -130,5 +130,46 @@ fn a_branch_that_comes_back_beside_itself_is_followed() {
             let known = first.get_or_insert(folds.clone());
             assert!(known.iter().zip(&folds).all(|(a, b)| (a - b).abs() < 1e-9), "{folds:?}");
         }
+    }
+}
+
+/// Imperfect pitchforks of a gap at the edge of what is told apart: where a branch point is no more than
+/// bracketed the branch says that it is not certain which way it went on.
+#[test]
+fn what_is_only_bracketed_is_not_certain() {
+    let shell = Shell { law: Law::Hooke, poisson: 0.384_536_898_529_598 };
+    let groups = Dimensionless {
+        bending: 2.367_752_263_824_953_8e-7,
+        pressure: 8.307_777_492_564_623e-4,
+        adhesion: 0.041_709_430_855_428_72,
+        film: 0.106_012_876_270_159_79,
+        surface_tension: 0.0,
+        gas_exponent: 1.07,
+    };
+    let problem = ContactProblem::new(&shell, &groups, Mesh::uniform(300).unwrap()).unwrap();
+    let mut known: Vec<(Vec<f64>, bool)> = Vec::new();
+    for max_step in [0.005, 0.007, 0.01] {
+        let settings =
+            Settings { target: Some(1.05), max_step: Some(max_step), ..Settings::default() };
+        let branch = trace(&problem, 1.736_077_257_6, settings).branch;
+        let places: Vec<f64> = branch
+            .events
+            .iter()
+            .filter(|event| matches!(event.kind, EventKind::Fold | EventKind::BranchPoint))
+            .map(|event| event.p)
+            .collect();
+        let bracketed = |event: &&continuation::Event| {
+            event.kind == EventKind::BranchPoint && event.detail == Detail::None
+        };
+        let vague = branch.events.iter().filter(bracketed).count();
+        println!("{max_step}: {places:?}, {vague} bracketed, {:?}", branch.doubts);
+        assert!(vague == 0 || !branch.is_certain(), "{max_step}: {places:?}");
+        let certain = branch.is_complete() && branch.is_certain();
+        for (other, also) in &known {
+            let same = other.len() == places.len()
+                && other.iter().zip(&places).all(|(a, b)| (a - b).abs() < 1e-6);
+            assert!(same || !(certain && *also), "{max_step}: {places:?} {other:?}");
+        }
+        known.push((places, certain));
     }
 }

@@ -512,6 +512,14 @@ impl Detector {
         );
     }
 
+    /// Leaves a doubt about a branch point that was only bracketed.
+    pub(crate) fn doubt_crossing(&mut self) {
+        self.doubt = Some(
+            "a branch point is bracketed, but no singular point was met in the bracket: two branches may \
+             pass there, too close to tell which of them goes on",
+        );
+    }
+
     /// What the step may hide, if the latest [`Detector::detect`] could not tell.
     pub(crate) fn doubt(&self) -> Option<&'static str> {
         self.doubt

@@ -286,7 +286,8 @@ impl<J: Matrix> Tracer<'_, J> {
                     Err(refusal @ Refusal::BranchesClose { .. }) => return Err(refusal),
                     Err(_) => {}
                 }
-                let state = work.clone();
+                self.detector.doubt_crossing();
+                let state = self.work.clone();
                 let (detail, eigenvectors) = (Detail::None, Vec::new());
                 located.push(Special { candidate, place, detail, eigenvectors, state });
             }

@@ -16,6 +16,7 @@ pub(crate) mod resolve;
 pub(crate) mod source;
 mod stability;
 mod two_plates;
+mod values;
 mod write;
 
 #[cfg(test)]
