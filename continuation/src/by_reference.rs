@@ -1,6 +1,5 @@
 //! A reference to a problem is a problem, also one to a problem of unknown type:
-//! `&dyn Problem<Jacobian = Dense>`. What uses many problems is compiled once for each type of
-//! Jacobian in place of once for each problem.
+//! `&dyn Problem<Jacobian = Dense>`.
 
 use crate::problem::{EvalError, ParamId, Parameter, Problem, SpecialPoints, Stability};
 

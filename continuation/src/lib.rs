@@ -1,5 +1,6 @@
 #![doc = include_str!("../docs/tour.md")]
 
+mod any_problem;
 pub mod branch;
 mod by_reference;
 pub mod codim2;

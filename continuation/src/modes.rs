@@ -7,7 +7,10 @@
 //! spectrum; others by shift-invert Arnoldi about zero, which proves nothing: an eigenvalue far from
 //! zero with a large imaginary part can be missed.
 
-use crate::linalg::{Arnoldi, Dense, EigenSettings, Lanczos, Matrix, Spectrum, count_right};
+use crate::any_problem::DynProblem;
+use crate::linalg::{
+    AnyMatrix, Arnoldi, Dense, EigenSettings, Lanczos, Matrix, Spectrum, count_right,
+};
 use crate::problem::{EvalError, Problem, Stability, check_finite, check_pattern};
 use crate::settings::Counting;
 
@@ -43,6 +46,16 @@ pub struct Modes {
 /// Where the problem has no value at the state.
 pub fn modes<P: Problem + ?Sized>(
     problem: &P,
+    u: &[f64],
+    p: &[f64],
+    count: usize,
+) -> Result<Modes, EvalError> {
+    modes_of(&problem, u, p, count)
+}
+
+/// [`modes`] of a problem of unknown type.
+pub(crate) fn modes_of(
+    problem: &DynProblem<'_>,
     u: &[f64],
     p: &[f64],
     count: usize,
@@ -107,11 +120,11 @@ fn dense<A: Matrix>(a: &A) -> Dense {
 }
 
 /// Computes the most unstable eigenvalues from a factored Jacobian; storage is reused.
-pub(crate) struct ModeSolver<P: Problem + ?Sized> {
+pub(crate) struct ModeSolver {
     wanted: usize,
     sense: Stability,
     multipliers: usize,
-    mass: Option<P::Jacobian>,
+    mass: Option<AnyMatrix>,
     lanczos: Option<Lanczos>,
     start: Vec<f64>,
     warm: bool,
@@ -121,8 +134,8 @@ pub(crate) struct ModeSolver<P: Problem + ?Sized> {
     definite: Option<bool>,
 }
 
-impl<P: Problem + ?Sized> ModeSolver<P> {
-    pub(crate) fn new(problem: &P, wanted: usize) -> Self {
+impl ModeSolver {
+    pub(crate) fn new(problem: &DynProblem<'_>, wanted: usize) -> Self {
         // from here on the matrices that come in are the Hessian
         let sense = match problem.stability() {
             Stability::SeparateHessian => Stability::EnergyHessian,
@@ -168,7 +181,7 @@ impl<P: Problem + ?Sized> ModeSolver<P> {
     }
 
     /// All eigenvalues with their errors, where a full spectrum is affordable.
-    pub(crate) fn spectrum(&self, jacobian: &P::Jacobian) -> Option<Spectrum> {
+    pub(crate) fn spectrum(&self, jacobian: &AnyMatrix) -> Option<Spectrum> {
         jacobian.spectrum_with_errors(self.mass.as_ref()).or_else(|| {
             let small = jacobian.dim() <= self.small;
             let mass = || self.mass.as_ref().map(dense);
@@ -181,7 +194,7 @@ impl<P: Problem + ?Sized> ModeSolver<P> {
     /// not there. `None` where it is not asked for, and where the count is not certain.
     pub(crate) fn by_argument(
         &mut self,
-        jacobian: &P::Jacobian,
+        jacobian: &AnyMatrix,
         few: &mut Vec<(f64, f64)>,
     ) -> Option<(usize, bool)> {
         if self.small < FULL || !self.mass_is_definite() {
@@ -208,16 +221,16 @@ impl<P: Problem + ?Sized> ModeSolver<P> {
 
     /// Eigenvalues beyond this are those of fast modes, beside which the others keep their digits; only
     /// a mass matrix makes them.
-    pub(crate) fn slow(&self, jacobian: &P::Jacobian) -> f64 {
-        let by_mass = |mass: &P::Jacobian| FAST * jacobian.norm() / mass.norm();
+    pub(crate) fn slow(&self, jacobian: &AnyMatrix) -> f64 {
+        let by_mass = |mass: &AnyMatrix| FAST * jacobian.norm() / mass.norm();
         self.mass.as_ref().map_or(f64::INFINITY, by_mass)
     }
 
     /// The most unstable eigenvalues to `values`, most unstable first; whether that is certain.
     pub(crate) fn solve(
         &mut self,
-        problem: &P,
-        jacobian: &mut P::Jacobian,
+        problem: &DynProblem<'_>,
+        jacobian: &mut AnyMatrix,
         inertia: Option<(usize, usize)>,
         values: &mut Vec<(f64, f64)>,
     ) -> bool {
@@ -249,7 +262,11 @@ impl<P: Problem + ?Sized> ModeSolver<P> {
 
     /// The full spectrum of an energy's Hessian against the metric, where that is not the identity
     /// and no mass matrix takes its place; only where eigenvalues are wanted.
-    pub(crate) fn weighted(&self, problem: &P, jacobian: &P::Jacobian) -> Option<Vec<(f64, f64)>> {
+    pub(crate) fn weighted(
+        &self,
+        problem: &DynProblem<'_>,
+        jacobian: &AnyMatrix,
+    ) -> Option<Vec<(f64, f64)>> {
         let energy = self.sense == Stability::EnergyHessian;
         if self.wanted == 0 || !energy || self.mass.is_some() {
             return None;
@@ -270,8 +287,8 @@ impl<P: Problem + ?Sized> ModeSolver<P> {
     /// At least `count` eigenvalues nearest to zero, by iteration with the factors.
     pub(crate) fn few(
         &self,
-        problem: &P,
-        jacobian: &mut P::Jacobian,
+        problem: &DynProblem<'_>,
+        jacobian: &mut AnyMatrix,
         count: usize,
     ) -> Vec<(f64, f64)> {
         let energy = self.sense == Stability::EnergyHessian;
@@ -300,8 +317,8 @@ impl<P: Problem + ?Sized> ModeSolver<P> {
 
     fn symmetric(
         &mut self,
-        problem: &P,
-        jacobian: &mut P::Jacobian,
+        problem: &DynProblem<'_>,
+        jacobian: &mut AnyMatrix,
         negative: usize,
         positive: usize,
         values: &mut Vec<(f64, f64)>,

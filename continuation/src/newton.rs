@@ -5,6 +5,7 @@
 //! computed with the old factors, is shorter. The test is invariant under any linear
 //! transformation of `f`. Full steps near a solution converge quadratically.
 
+use crate::any_problem::DynProblem;
 use crate::linalg::{Matrix, max_abs};
 use crate::problem::{EvalError, ParamId, Problem, check_pattern};
 use crate::sound::{ProblemError, check_lengths, check_sizes};
@@ -88,6 +89,16 @@ pub struct NewtonReport {
 /// When no solution was found; `u` then holds the best state reached.
 pub fn newton<P: Problem + ?Sized>(
     problem: &P,
+    u: &mut [f64],
+    p: &[f64],
+    settings: &NewtonSettings,
+) -> Result<NewtonReport, NewtonError> {
+    solve(&problem, u, p, settings)
+}
+
+/// [`newton`] of a problem of unknown type.
+pub(crate) fn solve(
+    problem: &DynProblem<'_>,
     u: &mut [f64],
     p: &[f64],
     settings: &NewtonSettings,
@@ -189,8 +200,8 @@ pub(crate) fn finite_rows<M: Matrix>(matrix: &M, scratch: &mut [f64]) -> Result<
 }
 
 /// Whether a residual is no more than the rounding errors of its terms.
-fn residual_is_rounding<P: Problem + ?Sized>(
-    problem: &P,
+fn residual_is_rounding(
+    problem: &DynProblem<'_>,
     u: &[f64],
     p: &[f64],
     r: &[f64],

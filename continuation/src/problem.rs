@@ -63,10 +63,6 @@ pub enum EvalError {
     OutsidePattern(#[from] OutsidePattern),
 }
 
-/// A problem of unknown type: what is written for it is compiled once for each type of Jacobian, not once
-/// for each problem.
-pub(crate) type DynProblem<'a, J> = dyn Problem<Jacobian = J> + 'a;
-
 /// What the eigenvalues of the Jacobian say about stability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stability {

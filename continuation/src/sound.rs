@@ -1,7 +1,8 @@
 //! Whether a problem is well formed: what no state and no parameter could mend.
 
+use crate::any_problem::DynProblem;
 use crate::linalg::{Matrix, OutsidePattern};
-use crate::problem::{ParamId, Problem};
+use crate::problem::ParamId;
 use crate::singular::arbitrary;
 
 /// What is wrong with a problem, whatever the state.
@@ -60,7 +61,7 @@ const BEFORE: [f64; 2] = [0.734_112_9, -1.913_377_1];
 const ADDED: f64 = 1e-9;
 
 /// Number of unknowns and dimension of the Jacobian.
-pub(crate) fn check_sizes<P: Problem + ?Sized>(problem: &P) -> Result<(), ProblemError> {
+pub(crate) fn check_sizes(problem: &DynProblem<'_>) -> Result<(), ProblemError> {
     let expected = problem.dim();
     if expected == 0 {
         return Err(ProblemError::NoUnknowns);
@@ -73,8 +74,8 @@ pub(crate) fn check_sizes<P: Problem + ?Sized>(problem: &P) -> Result<(), Proble
 }
 
 /// Lengths of the unknowns and of the parameters.
-pub(crate) fn check_lengths<P: Problem + ?Sized>(
-    problem: &P,
+pub(crate) fn check_lengths(
+    problem: &DynProblem<'_>,
     u: &[f64],
     p: &[f64],
 ) -> Result<(), ProblemError> {
@@ -92,8 +93,8 @@ pub(crate) fn check_lengths<P: Problem + ?Sized>(
 
 /// What a few evaluations at a state say of the problem; sizes and lengths are right. A state
 /// without a value says nothing.
-pub(crate) fn examine<P: Problem + ?Sized>(
-    problem: &P,
+pub(crate) fn examine(
+    problem: &DynProblem<'_>,
     which: ParamId,
     u: &[f64],
     p: &[f64],
@@ -150,7 +151,7 @@ fn written(
 }
 
 /// Whether the residual and both its derivatives are zero at this state and at others.
-fn vanishes<P: Problem + ?Sized>(problem: &P, which: ParamId, u: &[f64], p: &[f64]) -> bool {
+fn vanishes(problem: &DynProblem<'_>, which: ParamId, u: &[f64], p: &[f64]) -> bool {
     let n = u.len();
     let (mut r, mut slope, mut j) = (vec![0.0; n], vec![0.0; n], problem.new_jacobian());
     let size = u.iter().fold(1.0, |m: f64, x| m.max(x.abs()));

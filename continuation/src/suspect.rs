@@ -5,9 +5,10 @@
 //! the residual whose error is known; a kink or noise does not pass for it, because what differs must
 //! differ at another state and along another direction too.
 
+use crate::any_problem::DynProblem;
 use crate::differences::{self, magnitude};
 use crate::linalg::{Matrix, max_abs};
-use crate::problem::{ParamId, Problem};
+use crate::problem::ParamId;
 use crate::singular::arbitrary;
 use crate::step::Guard;
 use std::fmt;
@@ -53,8 +54,8 @@ impl fmt::Display for WrongDerivative {
 
 /// The derivative by which the problem deviates most from its residual at a state, if that is beyond
 /// doubt. Allocates, and costs some 50 residuals: to be asked rarely.
-pub(crate) fn wrong_derivative<P: Problem + ?Sized>(
-    problem: &P,
+pub(crate) fn wrong_derivative(
+    problem: &DynProblem<'_>,
     which: ParamId,
     (u, p): (&[f64], &[f64]),
     guard: Guard,
@@ -89,8 +90,8 @@ pub(crate) fn wrong_derivative<P: Problem + ?Sized>(
 
 /// The rows in which the derivative along a direction, or by the parameter, deviates; `None` without a
 /// value.
-fn compare<P: Problem + ?Sized>(
-    problem: &P,
+fn compare(
+    problem: &DynProblem<'_>,
     which: ParamId,
     (u, p): (&[f64], &[f64]),
     guard: Guard,

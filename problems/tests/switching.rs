@@ -16,7 +16,7 @@ impl Visitor for Explore {
     type Output = Vec<Branch>;
 
     fn visit<P: Problem>(self, problem: &P, setup: Setup) -> Vec<Branch> {
-        let run = |tracer: Tracer<'_, P::Jacobian>| tracer.run(&mut |_| ControlFlow::Continue(()));
+        let run = |tracer: Tracer<'_>| tracer.run(&mut |_| ControlFlow::Continue(()));
         let Setup { parameter, u, p, settings, watches } = setup;
         let first = Tracer::new(problem, parameter, &u, &p, settings).unwrap();
         let mut all = vec![run(first.watching(&watches).unwrap())];

@@ -25,7 +25,7 @@ fn base(problem: &ContactProblem) -> Branch {
     trace_contact(problem, 1.3, settings, &mut |_| ControlFlow::Continue(())).unwrap().branch
 }
 
-fn follow(curve: &FoldCurve<'_, ContactProblem>, max_step: Option<f64>) -> Curve {
+fn follow(curve: &FoldCurve<'_>, max_step: Option<f64>) -> Curve {
     let settings = Settings { domain: Some((2e-3, 0.2)), max_step, ..Settings::default() };
     let bounds = [0.8, 1.3].map(|z0| Watch::stop_at("z0", z0));
     curve.trace(&settings, &bounds, &mut |_| ControlFlow::Continue(())).unwrap()

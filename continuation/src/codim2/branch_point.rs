@@ -3,9 +3,10 @@
 use super::differences::{Along, Differences};
 use super::trace::{Curve, trace};
 use super::underlying::{CurveError, Underlying};
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Event, EventKind, Stop, StopReason};
 use crate::events::Watch;
-use crate::linalg::{Arrow, Bordered, Matrix};
+use crate::linalg::{AnyMatrix, Arrow, Bordered, Matrix};
 use crate::problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints};
 use crate::settings::Settings;
 use crate::step::dot;
@@ -43,24 +44,24 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// there: the curve goes on behind it, or ends with a step that is too small.
 ///
 /// Observables are `p`, those of the original problem, `beta` and `unfolding`.
-pub struct BranchPointCurve<'a, P: Problem + ?Sized> {
-    base: Underlying<'a, P>,
+pub struct BranchPointCurve<'a> {
+    base: Underlying<'a>,
     names: Vec<&'static str>,
     /// The start, `(u, β, p)`.
     start: Vec<f64>,
     /// The bordered matrix there: both halves of the curve begin with the same one.
     at_start: Kernel,
-    work: RefCell<Work<P>>,
+    work: RefCell<Work>,
 }
 
-struct Work<P: Problem + ?Sized> {
+struct Work {
     at: Vec<f64>,
     level: Level,
     p: Vec<f64>,
     r: Vec<f64>,
-    jacobian: P::Jacobian,
+    jacobian: AnyMatrix,
     kernel: Kernel,
-    differences: [Differences<P>; 2],
+    differences: [Differences; 2],
     scratch: Vec<f64>,
 }
 
@@ -136,14 +137,23 @@ impl Kernel {
     }
 }
 
-impl<'a, P: Problem + ?Sized> BranchPointCurve<'a, P> {
+impl<'a> BranchPointCurve<'a> {
     /// The curve through a simple branch point of `branch` when the parameter `second` varies too.
     ///
     /// # Errors
     /// When the event is no simple branch point of a branch of this problem, or there is no such
     /// parameter.
-    pub fn at(
+    pub fn at<P: Problem>(
         problem: &'a P,
+        branch: &Branch,
+        event: &Event,
+        second: &str,
+    ) -> Result<Self, CurveError> {
+        Self::of(problem, branch, event, second)
+    }
+
+    fn of(
+        problem: &'a DynProblem<'a>,
         branch: &Branch,
         event: &Event,
         second: &str,
@@ -243,7 +253,7 @@ impl<'a, P: Problem + ?Sized> BranchPointCurve<'a, P> {
 
     fn bring(
         &self,
-        work: &mut Work<P>,
+        work: &mut Work,
         x: &[f64],
         curve: &[f64],
         level: Level,
@@ -284,7 +294,7 @@ impl<'a, P: Problem + ?Sized> BranchPointCurve<'a, P> {
     }
 
     /// Turns the equations so that only the first one changes along `v₁`.
-    fn turn(&self, work: &mut Work<P>, x: &[f64], curve: &[f64]) -> Result<(), EvalError> {
+    fn turn(&self, work: &mut Work, x: &[f64], curve: &[f64]) -> Result<(), EvalError> {
         self.bring(work, x, curve, Level::Gradient)?;
         let v = &work.kernel.right[0];
         let along = [0, 1].map(|k| dot(&work.differences[k].derivatives[0], v));
@@ -296,14 +306,14 @@ impl<'a, P: Problem + ?Sized> BranchPointCurve<'a, P> {
     }
 
     /// `∂G_k` by the first and the second parameter.
-    fn by_parameters(work: &Work<P>, k: usize) -> [f64; 2] {
+    fn by_parameters(work: &Work, k: usize) -> [f64; 2] {
         let derivatives = &work.differences[k].derivatives;
         [1, 2].map(|i| -dot(&work.kernel.left, &derivatives[i]))
     }
 }
 
 /// Replaces the borders by the null vectors, orthonormal in the scaled metric, and the left one.
-fn take<P: Problem + ?Sized>(base: &Underlying<'_, P>, work: &mut Work<P>) {
+fn take(base: &Underlying<'_>, work: &mut Work) {
     let Work { kernel, scratch, .. } = work;
     let (u2, p2) = (base.scales.unknowns.powi(2), base.scales.first.powi(2));
     for k in 0..2 {
@@ -342,7 +352,7 @@ fn take<P: Problem + ?Sized>(base: &Underlying<'_, P>, work: &mut Work<P>) {
 }
 
 /// Whether the null vectors have turned away from the borders.
-fn astray<P: Problem + ?Sized>(base: &Underlying<'_, P>, work: &mut Work<P>) -> bool {
+fn astray(base: &Underlying<'_>, work: &mut Work) -> bool {
     let Work { kernel, scratch, .. } = work;
     let (u2, p2) = (base.scales.unknowns.powi(2), base.scales.first.powi(2));
     // the rows are of unit length, and dual to the null vectors
@@ -356,9 +366,9 @@ fn astray<P: Problem + ?Sized>(base: &Underlying<'_, P>, work: &mut Work<P>) -> 
     longest.sqrt() > 1.0 / ALIGNED || left > 1.0 / ALIGNED
 }
 
-impl<P: Problem + ?Sized> BranchPointCurve<'_, P> {
+impl BranchPointCurve<'_> {
     /// The quadratic form on the kernel, whose vectors are as long as the scales.
-    fn form(work: &Work<P>) -> [[f64; 2]; 2] {
+    fn form(work: &Work) -> [[f64; 2]; 2] {
         let kernel = &work.kernel;
         let mut form = [[0.0; 2]; 2];
         for (k, row) in form.iter_mut().enumerate() {
@@ -372,8 +382,8 @@ impl<P: Problem + ?Sized> BranchPointCurve<'_, P> {
     }
 }
 
-impl<P: Problem + ?Sized> Problem for BranchPointCurve<'_, P> {
-    type Jacobian = Arrow<P::Jacobian>;
+impl Problem for BranchPointCurve<'_> {
+    type Jacobian = Arrow<AnyMatrix>;
 
     fn dim(&self) -> usize {
         self.base.problem.dim() + 2
@@ -492,7 +502,7 @@ impl<P: Problem + ?Sized> Problem for BranchPointCurve<'_, P> {
     }
 }
 
-impl<P: Problem + ?Sized> SpecialPoints for BranchPointCurve<'_, P> {
+impl SpecialPoints for BranchPointCurve<'_> {
     fn others(&self, _x: &[f64], _p: &[f64]) -> Result<Others, EvalError> {
         Ok(Others::default())
     }

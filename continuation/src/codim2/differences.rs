@@ -5,8 +5,9 @@
 //! (about the square of how far the two orders are apart), by which the step adapts: it depends on
 //! neither the unit of `u` nor that of `f`.
 
-use crate::linalg::{Matrix, max_abs};
-use crate::problem::{EvalError, ParamId, Problem, check_finite};
+use crate::any_problem::DynProblem;
+use crate::linalg::{AnyMatrix, Matrix, max_abs};
+use crate::problem::{EvalError, ParamId, check_finite};
 
 /// Where the difference evaluates, in steps; its weights of order four and two.
 const PLACES: [(f64, f64, f64); 4] = [
@@ -40,8 +41,8 @@ pub(super) fn slope_step(step: f64, q: f64, dq: f64) -> f64 {
 }
 
 /// Work space of the differences along one direction.
-pub(super) struct Differences<P: Problem + ?Sized> {
-    shifted: P::Jacobian,
+pub(super) struct Differences {
+    shifted: AnyMatrix,
     place: Vec<f64>,
     p: Vec<f64>,
     value: Vec<f64>,
@@ -58,8 +59,8 @@ pub(super) struct Differences<P: Problem + ?Sized> {
     parameters: Vec<ParamId>,
 }
 
-impl<P: Problem + ?Sized> Differences<P> {
-    pub(super) fn new(problem: &P, lefts: usize, parameters: &[ParamId]) -> Self {
+impl Differences {
+    pub(super) fn new(problem: &DynProblem<'_>, lefts: usize, parameters: &[ParamId]) -> Self {
         let n = problem.dim();
         let all = lefts + parameters.len();
         Differences {
@@ -81,7 +82,7 @@ impl<P: Problem + ?Sized> Differences<P> {
     /// it.
     pub(super) fn along(
         &mut self,
-        problem: &P,
+        problem: &DynProblem<'_>,
         (u, p): (&[f64], &[f64]),
         v: Along<'_>,
         lefts: &[&[f64]],
@@ -103,7 +104,7 @@ impl<P: Problem + ?Sized> Differences<P> {
     /// Steps ever shorter, then longer ones, until the orders agree; else the best one.
     fn search(
         &mut self,
-        problem: &P,
+        problem: &DynProblem<'_>,
         at: (&[f64], &[f64]),
         v: Along<'_>,
         lefts: &[&[f64]],
@@ -131,7 +132,7 @@ impl<P: Problem + ?Sized> Differences<P> {
     /// The differences with the present step; how far the two orders are apart.
     fn differ(
         &mut self,
-        problem: &P,
+        problem: &DynProblem<'_>,
         (u, p): (&[f64], &[f64]),
         v: Along<'_>,
         lefts: &[&[f64]],

@@ -6,7 +6,7 @@ use super::trace::{Curve, trace};
 use super::underlying::{CurveError, Underlying};
 use crate::branch::{Branch, Event, EventKind, Point};
 use crate::events::Watch;
-use crate::linalg::{Arrow, Matrix, max_abs};
+use crate::linalg::{AnyMatrix, Arrow, Matrix, max_abs};
 use crate::modes::{ModeSolver, has_certain_signs};
 use crate::problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints, Stability};
 use crate::settings::Settings;
@@ -34,29 +34,29 @@ const SLOPE: f64 = 1e-4;
 /// A fold curve does not end at a [cusp](EventKind::Cusp), a
 /// [Bogdanov-Takens](EventKind::BogdanovTakens) or a [zero-Hopf](EventKind::ZeroHopf) point; it is
 /// traced through. Where it turns in `q` (at cusps, and elsewhere) no event is made of that.
-pub struct FoldCurve<'a, P: Problem + ?Sized> {
-    pub(super) base: Underlying<'a, P>,
+pub struct FoldCurve<'a> {
+    pub(super) base: Underlying<'a>,
     names: Vec<&'static str>,
     /// Number of the first test among the observables.
     first_test: usize,
-    mass: Option<P::Jacobian>,
+    mass: Option<AnyMatrix>,
     /// The start, `(u, p)`.
     start: Vec<f64>,
-    modes: ModeSolver<P>,
-    work: RefCell<Work<P>>,
+    modes: ModeSolver,
+    work: RefCell<Work>,
 }
 
 /// What is known at the latest state.
-struct Work<P: Problem + ?Sized> {
+struct Work {
     /// The state and the parameters of the curve, and for which of them the rest is known.
     at: Vec<f64>,
     level: Level,
     p: Vec<f64>,
     r: Vec<f64>,
-    jacobian: P::Jacobian,
+    jacobian: AnyMatrix,
     null: Null,
     /// Along the right null vector: for the left one, `p` and `q`.
-    differences: Differences<P>,
+    differences: Differences,
     g_first: f64,
     g_second: f64,
     scratch: Vec<f64>,
@@ -77,12 +77,12 @@ enum Level {
     Gradient,
 }
 
-impl<'a, P: Problem + ?Sized> FoldCurve<'a, P> {
+impl<'a> FoldCurve<'a> {
     /// The curve through a fold of `branch` when the parameter `second` varies too.
     ///
     /// # Errors
     /// When the event is no fold of a branch of this problem, or there is no such parameter.
-    pub fn at(
+    pub fn at<P: Problem>(
         problem: &'a P,
         branch: &Branch,
         event: &Event,
@@ -91,7 +91,7 @@ impl<'a, P: Problem + ?Sized> FoldCurve<'a, P> {
         Self::new(Underlying::at(problem, branch, event, second, EventKind::Fold)?)
     }
 
-    pub(super) fn new(base: Underlying<'a, P>) -> Result<Self, CurveError> {
+    pub(super) fn new(base: Underlying<'a>) -> Result<Self, CurveError> {
         let (problem, n) = (base.problem, base.problem.dim());
         let dynamics = problem.stability() == Stability::Dynamics;
         let names = base.names(&TESTS[..if dynamics { 2 } else { 1 }]);
@@ -197,7 +197,7 @@ impl<'a, P: Problem + ?Sized> FoldCurve<'a, P> {
     /// Brings `work` to the given level at a state.
     fn bring(
         &self,
-        work: &mut Work<P>,
+        work: &mut Work,
         x: &[f64],
         curve: &[f64],
         level: Level,
@@ -231,7 +231,7 @@ impl<'a, P: Problem + ?Sized> FoldCurve<'a, P> {
     }
 
     /// The tests at a state of which the gradient is known.
-    fn tests(&self, work: &mut Work<P>) -> [f64; 2] {
+    fn tests(&self, work: &mut Work) -> [f64; 2] {
         let Work { null, differences, scratch, g_first, g_second, jacobian, .. } = work;
         let scales = &self.base.scales;
         let row = &differences.derivatives[0];
@@ -259,12 +259,7 @@ impl<'a, P: Problem + ?Sized> FoldCurve<'a, P> {
         [cusp, takens]
     }
 
-    fn tests_at(
-        &self,
-        work: &mut Work<P>,
-        x: &[f64],
-        curve: &[f64],
-    ) -> Result<[f64; 2], EvalError> {
+    fn tests_at(&self, work: &mut Work, x: &[f64], curve: &[f64]) -> Result<[f64; 2], EvalError> {
         self.bring(work, x, curve, Level::Gradient)?;
         Ok(self.tests(work))
     }
@@ -272,7 +267,7 @@ impl<'a, P: Problem + ?Sized> FoldCurve<'a, P> {
     /// Slopes of both tests along a direction, by differences.
     fn test_slopes(
         &self,
-        work: &mut Work<P>,
+        work: &mut Work,
         (x, curve): (&[f64], &[f64]),
         which: ParamId,
         (dx, dq): (&[f64], f64),
@@ -303,8 +298,8 @@ impl<'a, P: Problem + ?Sized> FoldCurve<'a, P> {
     }
 }
 
-impl<P: Problem + ?Sized> Problem for FoldCurve<'_, P> {
-    type Jacobian = Arrow<P::Jacobian>;
+impl Problem for FoldCurve<'_> {
+    type Jacobian = Arrow<AnyMatrix>;
 
     fn dim(&self) -> usize {
         self.base.problem.dim() + 1
@@ -424,11 +419,11 @@ impl<P: Problem + ?Sized> Problem for FoldCurve<'_, P> {
     }
 }
 
-impl<P: Problem + ?Sized> FoldCurve<'_, P> {
+impl FoldCurve<'_> {
     /// `∂g` by a parameter other than the two of the curve.
     fn other_derivative(
         &self,
-        work: &mut Work<P>,
+        work: &mut Work,
         u: &[f64],
         which: ParamId,
     ) -> Result<f64, EvalError> {
@@ -447,7 +442,7 @@ impl<P: Problem + ?Sized> FoldCurve<'_, P> {
     }
 }
 
-impl<P: Problem + ?Sized> Work<P> {
+impl Work {
     /// Adapts the borders to the latest null vectors.
     fn renew(&mut self) {
         if self.level > Level::Nothing && self.null.renew() {
@@ -456,7 +451,7 @@ impl<P: Problem + ?Sized> Work<P> {
     }
 }
 
-impl<P: Problem + ?Sized> SpecialPoints for FoldCurve<'_, P> {
+impl SpecialPoints for FoldCurve<'_> {
     fn others(&self, x: &[f64], p: &[f64]) -> Result<Others, EvalError> {
         let work = &mut *self.work.borrow_mut();
         self.bring(work, x, p, Level::Null)?;

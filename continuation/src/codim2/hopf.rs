@@ -5,9 +5,10 @@ use super::pair::{LEFT, PairNull, RIGHT};
 use super::takens;
 use super::trace::{Curve, trace};
 use super::underlying::{CurveError, Underlying};
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Event, EventKind, Point};
 use crate::events::Watch;
-use crate::linalg::{Arrow, Matrix};
+use crate::linalg::{AnyMatrix, Arrow, Matrix};
 use crate::modes::{ModeSolver, has_certain_signs};
 use crate::problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints};
 use crate::settings::Settings;
@@ -43,8 +44,8 @@ const FEW: usize = 10;
 /// [Zero-Hopf](EventKind::ZeroHopf) and [double-Hopf](EventKind::DoubleHopf) points come from the
 /// full spectrum of small dense matrices, else from the eigenvalues nearest to zero, among which
 /// pairs of high frequency may be missing.
-pub struct HopfCurve<'a, P: Problem + ?Sized> {
-    pub(super) base: Underlying<'a, P>,
+pub struct HopfCurve<'a> {
+    pub(super) base: Underlying<'a>,
     names: Vec<&'static str>,
     /// Index of the test among the observables.
     test: usize,
@@ -52,26 +53,26 @@ pub struct HopfCurve<'a, P: Problem + ?Sized> {
     start: Vec<f64>,
     /// Length of a unit of `ω` in the metric.
     frequency_metric: f64,
-    modes: ModeSolver<P>,
-    work: RefCell<Work<'a, P>>,
+    modes: ModeSolver,
+    work: RefCell<Work<'a>>,
 }
 
-struct Work<'a, P: Problem + ?Sized> {
+struct Work<'a> {
     /// The state and the parameters of the curve for which the rest is known.
     at: Vec<f64>,
     level: Level,
     p: Vec<f64>,
     r: Vec<f64>,
-    jacobian: P::Jacobian,
-    pair: PairNull<P>,
+    jacobian: AnyMatrix,
+    pair: PairNull,
     /// Along real and imaginary part of the right vector, for both parts of the left one.
-    differences: [Differences<P>; 2],
+    differences: [Differences; 2],
     /// Derivatives of `Re g` and `Im g` by `u`, `p`, `q` and `ω`.
     by_u: [Vec<f64>; 2],
     by_first: [f64; 2],
     by_second: [f64; 2],
     by_omega: [f64; 2],
-    probe: Probe<'a, P>,
+    probe: Probe<'a>,
     scratch: Vec<f64>,
     error: f64,
 }
@@ -83,14 +84,23 @@ enum Level {
     Gradient,
 }
 
-impl<'a, P: Problem + ?Sized> HopfCurve<'a, P> {
+impl<'a> HopfCurve<'a> {
     /// The curve through a Hopf point of `branch` when the parameter `second` varies too.
     ///
     /// # Errors
     /// When the event is no Hopf point of a branch of this problem, there is no such parameter, or
     /// the problem's matrix has no complex form.
-    pub fn at(
+    pub fn at<P: Problem>(
         problem: &'a P,
+        branch: &Branch,
+        event: &Event,
+        second: &str,
+    ) -> Result<Self, CurveError> {
+        Self::of(problem, branch, event, second)
+    }
+
+    fn of(
+        problem: &'a DynProblem<'a>,
         branch: &Branch,
         event: &Event,
         second: &str,
@@ -225,7 +235,7 @@ impl<'a, P: Problem + ?Sized> HopfCurve<'a, P> {
 
     fn bring(
         &self,
-        work: &mut Work<'a, P>,
+        work: &mut Work<'a>,
         x: &[f64],
         curve: &[f64],
         level: Level,
@@ -273,7 +283,7 @@ impl<'a, P: Problem + ?Sized> HopfCurve<'a, P> {
     }
 
     /// The test for generalised Hopf points.
-    fn lyapunov(&self, work: &mut Work<'a, P>, x: &[f64], curve: &[f64]) -> Result<f64, EvalError> {
+    fn lyapunov(&self, work: &mut Work<'a>, x: &[f64], curve: &[f64]) -> Result<f64, EvalError> {
         let n = self.base.problem.dim();
         self.bring(work, x, curve, Level::Null)?;
         let Work { probe, pair, p, scratch, .. } = work;
@@ -294,8 +304,8 @@ impl<'a, P: Problem + ?Sized> HopfCurve<'a, P> {
     }
 }
 
-impl<P: Problem + ?Sized> Problem for HopfCurve<'_, P> {
-    type Jacobian = Arrow<P::Jacobian>;
+impl Problem for HopfCurve<'_> {
+    type Jacobian = Arrow<AnyMatrix>;
 
     fn dim(&self) -> usize {
         self.base.problem.dim() + 2
@@ -447,7 +457,7 @@ impl<P: Problem + ?Sized> Problem for HopfCurve<'_, P> {
     }
 }
 
-impl<P: Problem + ?Sized> SpecialPoints for HopfCurve<'_, P> {
+impl SpecialPoints for HopfCurve<'_> {
     fn others(&self, x: &[f64], p: &[f64]) -> Result<Others, EvalError> {
         let n = self.base.problem.dim();
         let work = &mut *self.work.borrow_mut();

@@ -1,7 +1,7 @@
 //! Null vectors of `f_u − iωM`, in real form: real and imaginary parts in turn.
 
-use crate::linalg::{Bordered, Matrix};
-use crate::problem::Problem;
+use crate::any_problem::DynProblem;
+use crate::linalg::{AnyMatrix, Bordered, Matrix};
 use crate::step::dot;
 
 /// Cosine between a border and the null vector below which the border is renewed.
@@ -9,8 +9,8 @@ const ALIGNED: f64 = 0.9;
 
 /// The solution of `[A b; cᴴ 0] [v; g] = [0; 1]` with `A = f_u − iωM`, and that of the conjugate
 /// transposed system.
-pub(super) struct PairNull<P: Problem + ?Sized> {
-    mass: P::Jacobian,
+pub(super) struct PairNull {
+    mass: AnyMatrix,
     bordered: Bordered,
     pub(super) right: Vec<f64>,
     pub(super) left: Vec<f64>,
@@ -34,9 +34,9 @@ fn turned(x: &[f64], y: &mut [f64]) {
     }
 }
 
-impl<P: Problem + ?Sized> PairNull<P> {
+impl PairNull {
     /// `None` where the matrix type knows no identity.
-    pub(super) fn new(problem: &P) -> Option<Self> {
+    pub(super) fn new(problem: &DynProblem<'_>) -> Option<Self> {
         let n = problem.dim();
         let mut mass = problem.new_jacobian();
         mass.set_zero();
@@ -69,7 +69,7 @@ impl<P: Problem + ?Sized> PairNull<P> {
 
     /// Solves for the null vectors; `None` where the matrix has no complex form, false where the
     /// result is not finite.
-    pub(super) fn solve(&mut self, jacobian: &P::Jacobian, omega: f64) -> Option<bool> {
+    pub(super) fn solve(&mut self, jacobian: &AnyMatrix, omega: f64) -> Option<bool> {
         let mut imaginary = self.mass.clone();
         imaginary.set_zero();
         imaginary.axpy(-omega, &self.mass);

@@ -22,7 +22,7 @@ const SEARCH: f64 = 30.0;
 
 /// Replaces the ends of a Hopf curve at the small frequency `level` by the Bogdanov-Takens points
 /// beyond them.
-pub(super) fn finish<P: Problem + ?Sized>(hopf: &HopfCurve<'_, P>, curve: &mut Curve, level: f64) {
+pub(super) fn finish(hopf: &HopfCurve<'_>, curve: &mut Curve, level: f64) {
     for first in [true, false] {
         let end = if first { &curve.first_end } else { &curve.branch.stopped };
         let n = hopf.base.problem.dim();
@@ -54,12 +54,7 @@ pub(super) fn finish<P: Problem + ?Sized>(hopf: &HopfCurve<'_, P>, curve: &mut C
 }
 
 /// The Bogdanov-Takens point beyond the curve's end, as a point and an event.
-fn search<P: Problem + ?Sized>(
-    hopf: &HopfCurve<'_, P>,
-    curve: &Curve,
-    at: usize,
-    first: bool,
-) -> Option<(Point, Event)> {
+fn search(hopf: &HopfCurve<'_>, curve: &Curve, at: usize, first: bool) -> Option<(Point, Event)> {
     let points = &curve.branch.points;
     let n = hopf.base.problem.dim();
     let end = &points[at];

@@ -1,11 +1,11 @@
 //! A curve of special points, traced both ways and ordered from end to end.
 
 use super::underlying::CurveError;
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Stop};
 use crate::events::Watch;
-use crate::problem::Problem;
 use crate::settings::Settings;
-use crate::tracer::{Progress, both_ways};
+use crate::tracer::{Progress, both};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -45,15 +45,15 @@ impl Curve {
 }
 
 /// Traces `problem` both ways from `(u, p)`.
-pub(super) fn trace<P: Problem>(
-    problem: &P,
+pub(super) fn trace(
+    problem: &DynProblem<'_>,
     (second, u, p): (&str, &[f64], &[f64]),
     settings: &Settings,
     watches: &[Watch],
     observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<Curve, CurveError> {
     let settings = Settings { increasing: Some(true), ..settings.clone() };
-    let branch = both_ways(problem, second, u, p, settings, watches, observer)?;
+    let branch = both(problem, second, (u, p), settings, watches, observer)?;
     let first_end = branch.began.clone().unwrap_or_else(|| branch.stopped.clone());
     Ok(Curve { branch, first_end })
 }

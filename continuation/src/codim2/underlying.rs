@@ -1,8 +1,9 @@
 //! The problem whose special points form a curve, and how its two parameters are measured.
 
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Event, EventKind, Point};
 use crate::linalg::{Matrix, max_abs};
-use crate::problem::{EvalError, ParamId, Parameter, Problem};
+use crate::problem::{EvalError, ParamId, Parameter};
 use crate::singular::{Extended, Probe};
 use crate::step::{Weights, dot};
 use crate::tracer::TraceError;
@@ -67,8 +68,8 @@ pub(super) struct Scales {
 }
 
 /// The problem, its first parameter, now an unknown, and its second.
-pub(super) struct Underlying<'a, P: ?Sized> {
-    pub(super) problem: &'a P,
+pub(super) struct Underlying<'a> {
+    pub(super) problem: &'a DynProblem<'a>,
     pub(super) first: ParamId,
     pub(super) second: ParamId,
     pub(super) scales: Scales,
@@ -83,9 +84,9 @@ pub(super) struct Underlying<'a, P: ?Sized> {
     moves: bool,
 }
 
-impl<'a, P: Problem + ?Sized> Underlying<'a, P> {
+impl<'a> Underlying<'a> {
     pub(super) fn at(
-        problem: &'a P,
+        problem: &'a DynProblem<'a>,
         branch: &Branch,
         event: &Event,
         second: &str,
@@ -239,8 +240,8 @@ impl<'a, P: Problem + ?Sized> Underlying<'a, P> {
 }
 
 /// The ranges along the branch on which the special point lies.
-fn scales<P: Problem + ?Sized>(
-    problem: &P,
+fn scales(
+    problem: &DynProblem<'_>,
     branch: &Branch,
     at: &Point,
     first: ParamId,

@@ -11,6 +11,7 @@ use super::cycle::{Cycle, CycleError};
 use super::mesh::uniform;
 use super::settings::CycleSettings;
 use super::trace::CycleBranch;
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Event, EventKind};
 use crate::problem::{ParamId, Problem};
 use crate::settings::{Counting, Settings};
@@ -45,6 +46,16 @@ impl SmallCycle {
     /// cycle is found.
     pub fn at_hopf<P: Problem + ?Sized>(
         problem: &P,
+        branch: &Branch,
+        event: &Event,
+        settings: &CycleSettings,
+    ) -> Result<Self, CycleError> {
+        Self::of_hopf(&problem, branch, event, settings)
+    }
+
+    /// [`Self::at_hopf`] of a problem of unknown type.
+    pub(crate) fn of_hopf(
+        problem: &DynProblem<'_>,
         branch: &Branch,
         event: &Event,
         settings: &CycleSettings,
@@ -92,6 +103,16 @@ impl SmallCycle {
         event: &Event,
         settings: &CycleSettings,
     ) -> Result<Self, CycleError> {
+        Self::of_doubling(&problem, cycles, event, settings)
+    }
+
+    /// [`Self::at_doubling`] of a problem of unknown type.
+    pub(crate) fn of_doubling(
+        problem: &DynProblem<'_>,
+        cycles: &CycleBranch,
+        event: &Event,
+        settings: &CycleSettings,
+    ) -> Result<Self, CycleError> {
         settings.validate()?;
         let wanted = EventKind::PeriodDoubling;
         if event.kind != wanted {
@@ -112,6 +133,18 @@ impl SmallCycle {
     /// direction changes the parameter alone, or no cycle is found along it.
     pub fn at_branch_point<P: Problem + ?Sized>(
         problem: &P,
+        cycles: &CycleBranch,
+        event: &Event,
+        index: usize,
+        forward: bool,
+        settings: &CycleSettings,
+    ) -> Result<Self, CycleError> {
+        Self::of_branch_point(&problem, cycles, event, index, forward, settings)
+    }
+
+    /// [`Self::at_branch_point`] of a problem of unknown type.
+    pub(crate) fn of_branch_point(
+        problem: &DynProblem<'_>,
         cycles: &CycleBranch,
         event: &Event,
         index: usize,
@@ -139,11 +172,11 @@ impl SmallCycle {
 
 /// A cycle run through twice, and the direction in which those of twice the period leave it where a
 /// multiplier is −1.
-pub(super) fn twice<P: Problem + ?Sized>(
-    problem: &P,
+pub(super) fn twice(
+    problem: &DynProblem<'_>,
     single: &Cycle,
 ) -> Result<(Cycle, Vec<f64>), CycleError> {
-    let equations = CycleProblem::new(problem, single)?;
+    let equations = CycleProblem::of(problem, single)?;
     let x = equations.unknowns(single);
     let mode = equations.flip(&x, &single.parameters)?.ok_or(CycleError::NoEigenvector)?;
     let mut mesh: Vec<f64> = single.mesh.iter().map(|t| 0.5 * t).collect();
@@ -160,8 +193,8 @@ fn foreign(what: &'static str) -> CycleError {
 }
 
 /// The continued parameter and all values at the event.
-fn place<P: Problem + ?Sized>(
-    problem: &P,
+fn place(
+    problem: &DynProblem<'_>,
     branch: &Branch,
     event: &Event,
 ) -> Result<(ParamId, Vec<f64>), CycleError> {
@@ -177,8 +210,8 @@ fn place<P: Problem + ?Sized>(
 }
 
 /// The cycle that is `base` plus a small multiple of `direction`, corrected.
-fn leave<P: Problem + ?Sized>(
-    problem: &P,
+fn leave(
+    problem: &DynProblem<'_>,
     which: ParamId,
     base: &Cycle,
     direction: Vec<f64>,
@@ -194,8 +227,8 @@ fn leave<P: Problem + ?Sized>(
 
 /// The cycle that is `base` plus a small multiple of `direction`, corrected; the multiple, and the
 /// direction of length 1 in the metric of the equations.
-pub(super) fn depart<P: Problem + ?Sized>(
-    problem: &P,
+pub(super) fn depart(
+    problem: &DynProblem<'_>,
     which: ParamId,
     base: &Cycle,
     mut direction: Vec<f64>,
@@ -205,7 +238,7 @@ pub(super) fn depart<P: Problem + ?Sized>(
     let (mut best, mut shrinking) = (None, false);
     let mut refusal = Refusal::Singular;
     // of length 1 in the metric, which any orbit of the same mesh gives
-    let equations = CycleProblem::new(problem, &shifted(base, epsilon, &direction))?;
+    let equations = CycleProblem::of(problem, &shifted(base, epsilon, &direction))?;
     let mut y = vec![0.0; equations.dim()];
     direction.push(0.0);
     equations.metric(&direction, &mut y);
@@ -264,15 +297,15 @@ pub(super) enum Attempt {
 }
 
 /// The cycle at the distance `epsilon` along the direction, and how far the first correction went.
-pub(super) fn correct<P: Problem + ?Sized>(
-    problem: &P,
+pub(super) fn correct(
+    problem: &DynProblem<'_>,
     which: ParamId,
     base: &Cycle,
     direction: &[f64],
     epsilon: f64,
 ) -> Result<(Cycle, f64), Attempt> {
     let start = shifted(base, epsilon, direction);
-    let equations = &CycleProblem::new(problem, &start).map_err(Attempt::Cycle)?;
+    let equations = &CycleProblem::of(problem, &start).map_err(Attempt::Cycle)?;
     let weights =
         Weights { unknowns: epsilon, parameter: problem.parameters()[which.0].scale.abs() };
     let settings = Settings { counting: Counting::Few, ..Settings::default() };

@@ -5,7 +5,8 @@ use super::cycle::{Cycle, CycleError};
 use super::floquet::{Multiplier, multipliers};
 use super::matrix::CycleMatrix;
 use super::mesh::Orbit;
-use crate::linalg::{Dense, Matrix};
+use crate::any_problem::DynProblem;
+use crate::linalg::{AnyMatrix, Dense, Matrix};
 use crate::problem::{
     EvalError, ParamId, Parameter, Problem, Stability, check_finite, check_pattern,
 };
@@ -33,8 +34,8 @@ pub(super) const TORUS: &str = "neimark_sacker";
 /// unit. Observables are `period`, `period_doubling` and `neimark_sacker`, two functions of the
 /// multipliers that vanish where one is −1, and where the product of two is 1. It says nothing about
 /// stability: the eigenvalues of its Jacobian are not the multipliers.
-pub struct CycleProblem<'a, P: Problem + ?Sized> {
-    pub(super) problem: &'a P,
+pub struct CycleProblem<'a> {
+    pub(super) problem: &'a DynProblem<'a>,
     pub(super) n: usize,
     pub(super) basis: Basis,
     pub(super) mesh: Vec<f64>,
@@ -43,14 +44,14 @@ pub struct CycleProblem<'a, P: Problem + ?Sized> {
     /// The phase condition: at each Gauss point the derivative of the reference orbit, weighted.
     phase: Vec<f64>,
     mass: Option<Dense>,
-    work: RefCell<Work<P>>,
+    work: RefCell<Work>,
 }
 
-struct Work<P: Problem + ?Sized> {
+struct Work {
     u: Vec<f64>,
     du: Vec<f64>,
     f: Vec<f64>,
-    jacobian: P::Jacobian,
+    jacobian: AnyMatrix,
     unit: Vec<f64>,
     /// The state and the parameters whose multipliers are known.
     at: Vec<f64>,
@@ -60,7 +61,7 @@ struct Work<P: Problem + ?Sized> {
 }
 
 /// A dense copy of a constant mass matrix, if it has full rank.
-pub(super) fn mass<P: Problem + ?Sized>(problem: &P) -> Result<Option<Dense>, CycleError> {
+pub(super) fn mass(problem: &DynProblem<'_>) -> Result<Option<Dense>, CycleError> {
     let n = problem.dim();
     let mut mass = problem.new_jacobian();
     mass.set_zero();
@@ -79,13 +80,18 @@ pub(super) fn mass<P: Problem + ?Sized>(problem: &P) -> Result<Option<Dense>, Cy
     if facts.perturbed > 0 { Err(CycleError::SingularMass) } else { Ok(Some(full)) }
 }
 
-impl<'a, P: Problem + ?Sized> CycleProblem<'a, P> {
+impl<'a> CycleProblem<'a> {
     /// The equations on the mesh of `cycle`, which is the reference orbit of the phase condition.
     ///
     /// # Errors
     /// When the problem is not `M du/dt = f(u, p)` with an `M` of full rank, when it has too many
     /// unknowns, and when the orbit does not fit it or is constant.
-    pub fn new(problem: &'a P, cycle: &Cycle) -> Result<Self, CycleError> {
+    pub fn new<P: Problem>(problem: &'a P, cycle: &Cycle) -> Result<Self, CycleError> {
+        Self::of(problem, cycle)
+    }
+
+    /// [`CycleProblem::new`] of a problem of unknown type.
+    pub(crate) fn of(problem: &'a DynProblem<'a>, cycle: &Cycle) -> Result<Self, CycleError> {
         let n = problem.dim();
         if problem.stability() != Stability::Dynamics {
             return Err(CycleError::NoDynamics);
@@ -193,7 +199,7 @@ impl<'a, P: Problem + ?Sized> CycleProblem<'a, P> {
         Ok(work.known.clone())
     }
 
-    fn find_multipliers(&self, work: &mut Work<P>, x: &[f64], p: &[f64]) -> Result<(), EvalError> {
+    fn find_multipliers(&self, work: &mut Work, x: &[f64], p: &[f64]) -> Result<(), EvalError> {
         let known = work.at.len() == x.len() + p.len()
             && work.at[..x.len()] == *x
             && work.at[x.len()..] == *p;
@@ -274,7 +280,7 @@ impl<'a, P: Problem + ?Sized> CycleProblem<'a, P> {
 
     fn assemble(
         &self,
-        work: &mut Work<P>,
+        work: &mut Work,
         x: &[f64],
         p: &[f64],
         matrix: &mut CycleMatrix,
@@ -385,7 +391,7 @@ fn normalised(values: impl Iterator<Item = (f64, f64)>, z: f64) -> f64 {
     product.0 / size
 }
 
-impl<P: Problem + ?Sized> Problem for CycleProblem<'_, P> {
+impl Problem for CycleProblem<'_> {
     type Jacobian = CycleMatrix;
 
     fn dim(&self) -> usize {

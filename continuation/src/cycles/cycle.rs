@@ -4,8 +4,9 @@ use super::basis::Basis;
 use super::collocation::CycleProblem;
 use super::mesh::{Orbit, halved, uniform};
 use super::settings::CycleSettings;
+use crate::any_problem::DynProblem;
 use crate::branch::EventKind;
-use crate::newton::{NewtonError, NewtonSettings, newton};
+use crate::newton::{self, NewtonError, NewtonSettings};
 use crate::problem::{EvalError, Problem};
 use crate::settings::SettingsError;
 use crate::step::Refusal;
@@ -120,6 +121,17 @@ impl Cycle {
     /// When the problem has no cycles of its own, or there is none near the guess.
     pub fn near<P: Problem + ?Sized>(
         problem: &P,
+        p: &[f64],
+        period: f64,
+        orbit: impl Fn(f64, &mut [f64]),
+        settings: &CycleSettings,
+    ) -> Result<Self, CycleError> {
+        Self::near_of(&problem, p, period, &orbit, settings)
+    }
+
+    /// [`Self::near`] of a problem of unknown type.
+    pub(crate) fn near_of(
+        problem: &DynProblem<'_>,
         p: &[f64],
         period: f64,
         orbit: impl Fn(f64, &mut [f64]),
@@ -273,10 +285,10 @@ impl Cycle {
     }
 
     /// The solution on the cycle's own mesh.
-    pub(super) fn solved<P: Problem + ?Sized>(&self, problem: &P) -> Result<Cycle, CycleError> {
-        let equations = CycleProblem::new(problem, self)?;
+    pub(super) fn solved(&self, problem: &DynProblem<'_>) -> Result<Cycle, CycleError> {
+        let equations = CycleProblem::of(problem, self)?;
         let mut x = equations.unknowns(self);
-        newton(&equations, &mut x, &self.parameters, &NewtonSettings::default())?;
+        newton::solve(&equations, &mut x, &self.parameters, &NewtonSettings::default())?;
         let found = equations.cycle(&x, &self.parameters);
         // Newton's method may have ended on an equilibrium
         let shrunk = found.amplitude() < 1e-6 * self.amplitude();
@@ -326,9 +338,9 @@ impl Cycle {
 
     /// The cycle on a mesh of its own, with as many intervals as its accuracy asks for: see
     /// [`CycleSettings::accuracy`].
-    pub(super) fn adapted<P: Problem + ?Sized>(
+    pub(super) fn adapted(
         &self,
-        problem: &P,
+        problem: &DynProblem<'_>,
         settings: &CycleSettings,
     ) -> Result<Cycle, CycleError> {
         let basis = Basis::new(self.degree);
@@ -361,7 +373,7 @@ impl Cycle {
 
     /// Relative change of period and states at the mesh points when every interval is halved; `None`
     /// where there is no solution then.
-    pub(super) fn discretisation_error<P: Problem + ?Sized>(&self, problem: &P) -> Option<f64> {
+    pub(super) fn discretisation_error(&self, problem: &DynProblem<'_>) -> Option<f64> {
         let fine = self.on(halved(&self.mesh)).solved(problem).ok()?;
         let period = (fine.period / self.period - 1.0).abs();
         let (n, m, size) = (self.dim(), self.degree, self.amplitude());

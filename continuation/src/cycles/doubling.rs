@@ -6,8 +6,9 @@
 use super::birth::{correct, depart, twice};
 use super::cycle::Cycle;
 use super::trace::CycleBranch;
+use crate::any_problem::DynProblem;
 use crate::branch::{Criticality, Detail, DoublingForm, EventKind};
-use crate::problem::{ParamId, Problem};
+use crate::problem::ParamId;
 
 /// Errors by which the curvature must differ from 0 for a criticality to be claimed.
 const CLEAR: f64 = 3.0;
@@ -15,11 +16,7 @@ const CLEAR: f64 = 3.0;
 const ROUNDING: f64 = 1e-12;
 
 /// Adds their forms to the period doublings of a branch.
-pub(super) fn add_forms<P: Problem + ?Sized>(
-    problem: &P,
-    which: ParamId,
-    branch: &mut CycleBranch,
-) {
+pub(super) fn add_forms(problem: &DynProblem<'_>, which: ParamId, branch: &mut CycleBranch) {
     for at in 0..branch.branch.events.len() {
         if branch.branch.events[at].kind == EventKind::PeriodDoubling
             && let Some(form) = form(problem, which, branch, at)
@@ -29,8 +26,8 @@ pub(super) fn add_forms<P: Problem + ?Sized>(
     }
 }
 
-fn form<P: Problem + ?Sized>(
-    problem: &P,
+fn form(
+    problem: &DynProblem<'_>,
     which: ParamId,
     branch: &CycleBranch,
     at: usize,

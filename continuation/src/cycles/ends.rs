@@ -2,11 +2,9 @@
 //! or where it began.
 
 use super::collocation::CycleProblem;
-use super::matrix::CycleMatrix;
 use super::point::observe;
 use super::trace::Run;
 use crate::branch::{Event, EventKind, Point, Stop, StopReason};
-use crate::problem::Problem;
 use crate::tracer::Tracer;
 
 /// Cosine between the orbit's derivative and the reference's below which the orbit is that of the other
@@ -21,12 +19,12 @@ const RESTS: f64 = 1e-6;
 /// Relative difference of periods and extrema of the same cycle on two meshes.
 const SAME: f64 = 1e-6;
 
-impl<'a, P: Problem + ?Sized> Run<'a, '_, P> {
+impl<'a> Run<'a, '_> {
     /// The end of the trace where doubled cycles come back to those of half their period: beyond that
     /// point the branch is the same again, half a period later.
     pub(super) fn halved(
         &self,
-        equations: &CycleProblem<'a, P>,
+        equations: &CycleProblem<'a>,
         point: &Point,
         event: &Event,
     ) -> Option<Stop> {
@@ -50,9 +48,9 @@ impl<'a, P: Problem + ?Sized> Run<'a, '_, P> {
     /// The end of the trace where the cycles have shrunk to an equilibrium.
     pub(super) fn vanished(
         &self,
-        equations: &CycleProblem<'a, P>,
+        equations: &CycleProblem<'a>,
         point: &Point,
-        tracer: &Tracer<'_, CycleMatrix>,
+        tracer: &Tracer<'_>,
     ) -> Option<Stop> {
         let mut p = vec![0.0; self.problem.parameters().len()];
         p[self.which.0] = point.p;

@@ -5,6 +5,7 @@ use super::cycle::{Cycle, CycleError};
 use super::point::observe;
 use super::settings::CycleSettings;
 use super::trace::{CycleBranch, trace};
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Event, EventKind, StopReason};
 use crate::problem::Problem;
 use crate::settings::Settings;
@@ -129,8 +130,19 @@ impl Explored {
 /// # Errors
 /// When the settings are unusable or the problem has no cycles. A special point from which nothing can be
 /// followed is among [`Explored::failed`].
-pub fn explore<P: Problem>(
+pub fn explore<P: Problem + ?Sized>(
     problem: &P,
+    equilibria: &[&Branch],
+    chosen: &dyn Fn(usize, usize) -> bool,
+    follow: &Follow<'_>,
+    observer: &mut dyn FnMut(usize, &Progress) -> ControlFlow<()>,
+) -> Result<Explored, CycleError> {
+    explore_of(&problem, equilibria, chosen, follow, observer)
+}
+
+/// [`explore`] of a problem of unknown type.
+pub(crate) fn explore_of(
+    problem: &DynProblem<'_>,
     equilibria: &[&Branch],
     chosen: &dyn Fn(usize, usize) -> bool,
     follow: &Follow<'_>,
@@ -266,9 +278,9 @@ impl Explored {
     }
 
     /// The first cycle that leaves a special point; `None` where the event is no longer there.
-    fn start<P: Problem>(
+    fn start(
         &self,
-        problem: &P,
+        problem: &DynProblem<'_>,
         equilibria: &[&Branch],
         from: CycleOrigin,
         settings: &CycleSettings,
@@ -295,7 +307,7 @@ impl Explored {
 
     /// Whether a cycle lies on one of the branches: the cycle of a branch that is near it, solved for
     /// at its parameter, has the same period and the same extrema.
-    fn has<P: Problem>(&self, problem: &P, parameter: &str, cycle: &Cycle) -> bool {
+    fn has(&self, problem: &DynProblem<'_>, parameter: &str, cycle: &Cycle) -> bool {
         let all = problem.parameters();
         let Some(which) = all.iter().position(|q| q.name == parameter) else { return false };
         let p = cycle.parameters[which];

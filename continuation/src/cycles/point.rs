@@ -4,6 +4,7 @@ use super::collocation::CycleProblem;
 use super::cycle::Cycle;
 use super::floquet::Multiplier;
 use super::mesh::{Orbit, halved};
+use crate::any_problem::DynProblem;
 use crate::linalg::Bordered;
 use crate::problem::{EvalError, ParamId, Problem};
 use crate::settings::{Counting, Settings};
@@ -72,8 +73,8 @@ pub(super) struct Finer {
 
 /// Solves for the same point with every interval halved; `None` where that fails. `across` has it sought
 /// on the plane across the branch in any case, with a second point ahead.
-pub(super) fn finer<P: Problem + ?Sized>(
-    coarse: &CycleProblem<'_, P>,
+pub(super) fn finer(
+    coarse: &CycleProblem<'_>,
     which: ParamId,
     x: &[f64],
     p: &[f64],
@@ -82,7 +83,7 @@ pub(super) fn finer<P: Problem + ?Sized>(
 ) -> Option<Finer> {
     let cycle = coarse.cycle(x, p);
     let (n, m) = (coarse.n, coarse.basis.degree);
-    let fine = CycleProblem::new(coarse.problem, &cycle.on(halved(&cycle.mesh))).ok()?;
+    let fine = CycleProblem::of(coarse.problem, &cycle.on(halved(&cycle.mesh))).ok()?;
     let settings = Settings { counting: Counting::Few, ..Settings::default() };
     // the amplitude in the metric, and what the parameter is expected to pass
     let weights = Weights { unknowns: fine.unit * cycle.period, parameter: range };
@@ -114,8 +115,8 @@ pub(super) fn finer<P: Problem + ?Sized>(
 }
 
 /// The tangent at a state near a solution, of unit length in the scaled metric; `None` where there is none.
-fn tangent<P: Problem + ?Sized>(
-    problem: &CycleProblem<'_, P>,
+fn tangent(
+    problem: &CycleProblem<'_>,
     which: ParamId,
     p: &[f64],
     weights: Weights,
@@ -144,7 +145,7 @@ fn tangent<P: Problem + ?Sized>(
 }
 
 /// A point a small step along the branch.
-fn step_along<P: Problem + ?Sized>(core: &mut Core<'_, P>, from: &State) -> Result<State, Refusal> {
+fn step_along(core: &mut Core<'_>, from: &State) -> Result<State, Refusal> {
     let h = 1e-3;
     let mut x = from.clone();
     x.u.iter_mut().zip(&from.tu).for_each(|(u, t)| *u += h * t);
@@ -155,8 +156,8 @@ fn step_along<P: Problem + ?Sized>(core: &mut Core<'_, P>, from: &State) -> Resu
 
 impl CyclePoint {
     /// What is known of a solution of the collocation equations.
-    pub(super) fn of<P: Problem + ?Sized>(
-        equations: &CycleProblem<'_, P>,
+    pub(super) fn of(
+        equations: &CycleProblem<'_>,
         x: &[f64],
         p: &[f64],
         finer: Option<&Finer>,
@@ -228,7 +229,7 @@ fn assign_errors(multipliers: &mut [Multiplier], finer: &[Multiplier], trivial: 
 }
 
 /// Names of the columns that are observed on cycles.
-pub(super) fn columns<P: Problem + ?Sized>(problem: &P) -> Vec<String> {
+pub(super) fn columns(problem: &DynProblem<'_>) -> Vec<String> {
     let own = problem.observables();
     let names: Vec<String> = if own.is_empty() {
         (0..problem.dim().min(MOST_UNKNOWNS)).map(|i| format!("u[{i}]")).collect()
@@ -242,10 +243,7 @@ pub(super) fn columns<P: Problem + ?Sized>(problem: &P) -> Vec<String> {
 }
 
 /// Their values: maximum, minimum and mean over the period.
-pub(super) fn observe<P: Problem + ?Sized>(
-    problem: &P,
-    cycle: &Cycle,
-) -> Result<Vec<f64>, EvalError> {
+pub(super) fn observe(problem: &DynProblem<'_>, cycle: &Cycle) -> Result<Vec<f64>, EvalError> {
     let own = problem.observables().len();
     let count = if own == 0 { problem.dim().min(MOST_UNKNOWNS) } else { own };
     let basis = super::basis::Basis::new(cycle.degree);

@@ -3,13 +3,13 @@
 use super::collocation::{CycleProblem, DOUBLING, PERIOD, TORUS};
 use super::cycle::{Cycle, CycleError};
 use super::doubling::add_forms;
-use super::matrix::CycleMatrix;
 use super::mesh::Orbit;
 use super::point::{CyclePoint, Finer, columns, finer, observe};
 use super::settings::CycleSettings;
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Doubt, Event, EventKind, Point, Statistics, Stop, StopReason};
 use crate::events::Watch;
-use crate::problem::{DynProblem, ParamId, Problem};
+use crate::problem::{ParamId, Problem};
 use crate::settings::{Counting, Settings};
 use crate::step::State;
 use crate::tracer::{Baton, Progress, TraceError, Tracer};
@@ -48,7 +48,7 @@ pub struct CycleBranch {
 /// # Errors
 /// When the settings are unusable, the problem has no cycles ([`CycleError`]), or there is none near the
 /// start.
-pub fn trace<P: Problem>(
+pub fn trace<P: Problem + ?Sized>(
     problem: &P,
     parameter: &str,
     start: &Cycle,
@@ -57,7 +57,19 @@ pub fn trace<P: Problem>(
     watches: &[Watch],
     observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<CycleBranch, CycleError> {
-    let problem: &DynProblem<'_, P::Jacobian> = problem;
+    trace_of(&problem, parameter, start, settings, cycle_settings, watches, observer)
+}
+
+/// [`trace`] of a problem of unknown type.
+pub(crate) fn trace_of(
+    problem: &DynProblem<'_>,
+    parameter: &str,
+    start: &Cycle,
+    settings: &Settings,
+    cycle_settings: &CycleSettings,
+    watches: &[Watch],
+    observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<CycleBranch, CycleError> {
     cycle_settings.validate()?;
     let all = problem.parameters();
     let Some(which) = all.iter().position(|q| q.name == parameter).map(ParamId) else {
@@ -86,7 +98,7 @@ pub fn trace<P: Problem>(
         shortest: f64::INFINITY,
         interrupted: false,
     };
-    let mut equations = CycleProblem::new(problem, start)?;
+    let mut equations = CycleProblem::of(problem, start)?;
     let (x, p) = (equations.unknowns(start), start.parameters.clone());
     let mut baton: Option<Baton> = None;
     let stopped = loop {
@@ -115,13 +127,13 @@ pub fn trace<P: Problem>(
     Ok(run.finish(parameter, &p, stopped))
 }
 
-enum Outcome<'a, P: Problem + ?Sized> {
+enum Outcome<'a> {
     End(Stop),
-    Restart(Box<(CycleProblem<'a, P>, Baton)>),
+    Restart(Box<(CycleProblem<'a>, Baton)>),
 }
 
-pub(super) struct Run<'a, 's, P: Problem + ?Sized> {
-    pub(super) problem: &'a P,
+pub(super) struct Run<'a, 's> {
+    pub(super) problem: &'a DynProblem<'a>,
     pub(super) which: ParamId,
     settings: Settings,
     pub(super) cycle_settings: &'s CycleSettings,
@@ -142,16 +154,16 @@ pub(super) struct Run<'a, 's, P: Problem + ?Sized> {
     interrupted: bool,
 }
 
-impl<'a, P: Problem + ?Sized> Run<'a, '_, P> {
+impl<'a> Run<'a, '_> {
     /// Traces on one mesh until it is to be adapted, or to the end.
     fn segment(
         &mut self,
-        equations: &CycleProblem<'a, P>,
-        mut tracer: Tracer<'_, CycleMatrix>,
+        equations: &CycleProblem<'a>,
+        mut tracer: Tracer<'_>,
         start: &[f64],
         resumed: bool,
         observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
-    ) -> Outcome<'a, P> {
+    ) -> Outcome<'a> {
         let mut count = 0;
         let mut skip = resumed;
         let (mut ended, mut restart) = (None, None);
@@ -219,10 +231,10 @@ impl<'a, P: Problem + ?Sized> Run<'a, '_, P> {
     /// would be a jump.
     fn adapt(
         &self,
-        equations: &CycleProblem<'a, P>,
+        equations: &CycleProblem<'a>,
         mut baton: Baton,
         start: &[f64],
-    ) -> Option<Box<(CycleProblem<'a, P>, Baton)>> {
+    ) -> Option<Box<(CycleProblem<'a>, Baton)>> {
         let last = self.cycles.last()?;
         let settings = self.cycle_settings;
         let mut intervals = equations.intervals() as f64;
@@ -240,7 +252,7 @@ impl<'a, P: Problem + ?Sized> Run<'a, '_, P> {
         let count = (intervals.ceil() as usize).clamp(settings.intervals, settings.max_intervals);
         let mesh = equations.orbit(&baton.at.u).equidistributed(count);
         let cycle = last.cycle.on(mesh);
-        let next = CycleProblem::new(self.problem, &cycle).ok()?;
+        let next = CycleProblem::of(self.problem, &cycle).ok()?;
         let (n, end) = (equations.n, baton.at.tu.len() - 1);
         let tangent = Orbit {
             n,
@@ -263,7 +275,7 @@ impl<'a, P: Problem + ?Sized> Run<'a, '_, P> {
     /// Adds a point with all that is known of it, and its event.
     fn record(
         &mut self,
-        equations: &CycleProblem<'a, P>,
+        equations: &CycleProblem<'a>,
         mut point: Point,
         event: Option<Event>,
         start: &[f64],

@@ -11,9 +11,10 @@
 //! against the distance to every known solution, the plain method takes over and ends it.
 
 use super::known::Known;
-use crate::linalg::Matrix;
-use crate::newton::{NewtonSettings, newton};
-use crate::problem::{EvalError, Problem, check_finite};
+use crate::any_problem::DynProblem;
+use crate::linalg::{AnyMatrix, Matrix};
+use crate::newton::{self, NewtonSettings};
+use crate::problem::{EvalError, check_finite};
 
 /// Why an attempt gave no new solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,10 +46,10 @@ pub(super) struct Converged {
 }
 
 /// Work space of attempts.
-pub(super) struct Solver<'a, P: Problem + ?Sized> {
-    problem: &'a P,
+pub(super) struct Solver<'a> {
+    problem: &'a DynProblem<'a>,
     p: Vec<f64>,
-    jacobian: P::Jacobian,
+    jacobian: AnyMatrix,
     /// Jacobian assemblies so far.
     pub(super) assemblies: usize,
     pub(super) u: Vec<f64>,
@@ -67,8 +68,8 @@ const SHORTEST: f64 = 1e-4;
 /// A correction that is so small a part of the distance to every known solution leads to a new one.
 const APART: f64 = 1e-3;
 
-impl<'a, P: Problem + ?Sized> Solver<'a, P> {
-    pub(super) fn new(problem: &'a P, p: &[f64]) -> Self {
+impl<'a> Solver<'a> {
+    pub(super) fn new(problem: &'a DynProblem<'a>, p: &[f64]) -> Self {
         let vector = || vec![0.0; problem.dim()];
         Solver {
             problem,
@@ -87,7 +88,7 @@ impl<'a, P: Problem + ?Sized> Solver<'a, P> {
     /// how far from the start the attempt may go.
     pub(super) fn attempt(
         &mut self,
-        known: &mut Known<'a, P>,
+        known: &mut Known<'a>,
         start: &[f64],
         (reach, bound): (f64, Option<f64>),
         damping: Damping,
@@ -164,7 +165,7 @@ impl<'a, P: Problem + ?Sized> Solver<'a, P> {
 
     /// The plain method, from a state so near that it stays.
     fn polish(&mut self, limits: &NewtonSettings) -> Result<Converged, Failure> {
-        match newton(self.problem, &mut self.u, &self.p, limits) {
+        match newton::solve(self.problem, &mut self.u, &self.p, limits) {
             Ok(report) => {
                 self.assemblies += report.iterations;
                 Ok(Converged { correction: report.correction })
@@ -185,7 +186,7 @@ impl<'a, P: Problem + ?Sized> Solver<'a, P> {
 
     /// Whether the simplified correction at the trial state, whose residual is in `r`, is no longer
     /// than `bound`; `log` is that of the factor at `u`.
-    fn shorter(&mut self, known: &mut Known<'a, P>, log: f64, tau: f64, bound: f64) -> bool {
+    fn shorter(&mut self, known: &mut Known<'a>, log: f64, tau: f64, bound: f64) -> bool {
         let (log_trial, _) = known.factor(&self.trial, &self.metric);
         let growth = (log_trial - log).exp();
         self.jacobian.solve(&mut self.r);

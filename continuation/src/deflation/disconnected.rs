@@ -4,9 +4,10 @@ use super::known::Known;
 use super::{
     Deflation, DeflationError, DeflationReport, DeflationSettings, check, check_branch, passing,
 };
+use crate::any_problem::DynProblem;
 use crate::branch::Branch;
 use crate::near::NearBifurcation;
-use crate::problem::{DynProblem, Problem};
+use crate::problem::Problem;
 use crate::step::dot;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -73,7 +74,7 @@ pub struct OffBranch {
 /// # Errors
 /// When no branch is given, a branch or a near-bifurcation is not one of this problem, a setting is
 /// out of range or a value not finite.
-pub fn disconnected<P: Problem>(
+pub fn disconnected<P: Problem + ?Sized>(
     problem: &P,
     branches: &[Branch],
     near: &[NearBifurcation],
@@ -89,7 +90,7 @@ pub fn disconnected<P: Problem>(
 ///
 /// # Errors
 /// As for [`disconnected`].
-pub fn disconnected_observed<P: Problem>(
+pub fn disconnected_observed<P: Problem + ?Sized>(
     problem: &P,
     branches: &[Branch],
     near: &[NearBifurcation],
@@ -98,20 +99,19 @@ pub fn disconnected_observed<P: Problem>(
     observer: &mut dyn FnMut(&DeflationReport) -> ControlFlow<()>,
 ) -> Result<Vec<OffBranch>, DeflationError> {
     let branches: Vec<&Branch> = branches.iter().collect();
-    let problem: &DynProblem<'_, P::Jacobian> = problem;
-    off_branches(problem, &branches, near, values, settings, observer)
+    off_branches(&problem, &branches, near, values, settings, observer)
 }
 
 /// [`disconnected_observed`], of branches that lie anywhere.
-pub(crate) fn off_branches<P: Problem + ?Sized>(
-    problem: &P,
+pub(crate) fn off_branches(
+    problem: &DynProblem<'_>,
     branches: &[&Branch],
     near: &[NearBifurcation],
     values: &[f64],
     settings: &DeflationSettings,
     observer: &mut dyn FnMut(&DeflationReport) -> ControlFlow<()>,
 ) -> Result<Vec<OffBranch>, DeflationError> {
-    let mut run = |search: Deflation<'_, P>| {
+    let mut run = |search: Deflation<'_>| {
         let mut stopped = false;
         let found = search.run_observed(&mut |report| {
             let flow = observer(report);
@@ -157,7 +157,7 @@ pub(crate) fn off_branches<P: Problem + ?Sized>(
     }
     for value in values {
         let p = at(*value);
-        let mut search = Deflation::new(problem, &p, settings.clone())?;
+        let mut search = Deflation::of(problem, &p, settings.clone())?;
         for branch in branches {
             search = search.along(branch, STATES)?;
         }
@@ -183,6 +183,17 @@ pub fn lies_on<P: Problem + ?Sized>(
     p: &[f64],
     settings: &DeflationSettings,
 ) -> Result<bool, DeflationError> {
+    is_on(&problem, branch, u, p, settings)
+}
+
+/// [`lies_on`] of a problem of unknown type.
+pub(crate) fn is_on(
+    problem: &DynProblem<'_>,
+    branch: &Branch,
+    u: &[f64],
+    p: &[f64],
+    settings: &DeflationSettings,
+) -> Result<bool, DeflationError> {
     settings.validate()?;
     let which = check_branch(problem, branch)?;
     check("the solution", u, problem.dim())?;
@@ -200,10 +211,10 @@ pub fn lies_on<P: Problem + ?Sized>(
 
 /// Values of the parameter on one side of a near-bifurcation, inside or outside of the range of the
 /// branches. Beyond the end of a branch, where it goes on without being known, there are none.
-fn offsets<P: Problem + ?Sized>(
+fn offsets(
     branches: &[&Branch],
     which: usize,
-    problem: &P,
+    problem: &DynProblem<'_>,
     near: &NearBifurcation,
     side: f64,
     inside: bool,
@@ -228,14 +239,14 @@ fn offsets<P: Problem + ?Sized>(
 }
 
 /// The search at the parameters `p` beside a near-bifurcation.
-fn beside<'a, P: Problem + ?Sized>(
-    problem: &'a P,
+fn beside<'a>(
+    problem: &'a DynProblem<'a>,
     branches: &[&Branch],
     which: usize,
     near: &NearBifurcation,
     p: &[f64],
     settings: &DeflationSettings,
-) -> Result<Deflation<'a, P>, DeflationError> {
+) -> Result<Deflation<'a>, DeflationError> {
     let mut starts: Vec<Vec<f64>> = Vec::new();
     let mut m = vec![0.0; problem.dim()];
     let v = &near.direction.du;
@@ -281,7 +292,7 @@ fn beside<'a, P: Problem + ?Sized>(
             starts.push(near.u.iter().zip(v).map(|(u, v)| u + amplitude * v).collect());
         }
     }
-    let mut search = Deflation::new(problem, p, settings)?.starts(&starts)?;
+    let mut search = Deflation::of(problem, p, settings)?.starts(&starts)?;
     for branch in branches {
         search = search.along(branch, 0)?;
     }

@@ -5,12 +5,12 @@
 //! ∇ log m · x = − Σ 2 (u − u_i)·M x / (ℓ² q_i (q_i + 1)).
 //! ```
 
-use crate::problem::Problem;
+use crate::any_problem::DynProblem;
 use crate::step::dot;
 
 /// Known solutions, and work space for distances from them.
-pub(super) struct Known<'a, P: Problem + ?Sized> {
-    problem: &'a P,
+pub(super) struct Known<'a> {
+    problem: &'a DynProblem<'a>,
     /// The solutions.
     pub(super) solutions: Vec<Vec<f64>>,
     /// The length by which distances are divided; 0 until it is known.
@@ -19,8 +19,8 @@ pub(super) struct Known<'a, P: Problem + ?Sized> {
     metric: Vec<f64>,
 }
 
-impl<'a, P: Problem + ?Sized> Known<'a, P> {
-    pub(super) fn new(problem: &'a P) -> Self {
+impl<'a> Known<'a> {
+    pub(super) fn new(problem: &'a DynProblem<'a>) -> Self {
         let n = problem.dim();
         Known {
             problem,

@@ -56,8 +56,9 @@ pub(crate) use disconnected::off_branches;
 pub use disconnected::{OffBranch, disconnected, disconnected_observed, lies_on};
 pub use settings::DeflationSettings;
 
+use crate::any_problem::DynProblem;
 use crate::branch::Branch;
-use crate::newton::newton;
+use crate::newton;
 use crate::problem::{Problem, check_finite};
 use crate::settings::SettingsError;
 use attempt::{Damping, Failure, Solver};
@@ -159,11 +160,11 @@ pub struct Deflated {
 }
 
 /// A search for further solutions at one parameter vector.
-pub struct Deflation<'a, P: Problem + ?Sized> {
-    problem: &'a P,
+pub struct Deflation<'a> {
+    problem: &'a DynProblem<'a>,
     p: Vec<f64>,
     settings: DeflationSettings,
-    known: Known<'a, P>,
+    known: Known<'a>,
     /// How far the branches lead from their starts.
     extent: f64,
     /// Solutions of branches that Newton's method did not meet.
@@ -178,13 +179,22 @@ struct Start {
     tried: Option<usize>,
 }
 
-impl<'a, P: Problem + ?Sized> Deflation<'a, P> {
+impl<'a> Deflation<'a> {
     /// Prepares a search at the parameters `p`.
     ///
     /// # Errors
     /// When a setting is out of range or `p` has the wrong length.
-    pub fn new(
+    pub fn new<P: Problem>(
         problem: &'a P,
+        p: &[f64],
+        settings: DeflationSettings,
+    ) -> Result<Self, DeflationError> {
+        Self::of(problem, p, settings)
+    }
+
+    /// [`Deflation::new`] of a problem of unknown type.
+    pub(crate) fn of(
+        problem: &'a DynProblem<'a>,
         p: &[f64],
         settings: DeflationSettings,
     ) -> Result<Self, DeflationError> {
@@ -212,7 +222,7 @@ impl<'a, P: Problem + ?Sized> Deflation<'a, P> {
             check("a known solution", u.as_ref(), self.problem.dim())?;
             let mut polished = u.as_ref().to_vec();
             let settings = self.settings.newton();
-            if newton(self.problem, &mut polished, &self.p, &settings).is_err() {
+            if newton::solve(self.problem, &mut polished, &self.p, &settings).is_err() {
                 polished.copy_from_slice(u.as_ref());
             }
             self.admit(polished);
@@ -455,15 +465,22 @@ pub fn further_solutions<P: Problem + ?Sized>(
     known: &[Vec<f64>],
     settings: DeflationSettings,
 ) -> Result<Vec<Vec<f64>>, DeflationError> {
-    let found = Deflation::new(problem, p, settings)?.known(known)?.run();
+    further(&problem, p, known, settings)
+}
+
+/// [`further_solutions`] of a problem of unknown type.
+pub(crate) fn further(
+    problem: &DynProblem<'_>,
+    p: &[f64],
+    known: &[Vec<f64>],
+    settings: DeflationSettings,
+) -> Result<Vec<Vec<f64>>, DeflationError> {
+    let found = Deflation::of(problem, p, settings)?.known(known)?.run();
     Ok(found.solutions.into_iter().map(|solution| solution.u).collect())
 }
 
 /// Checks that a branch can be one of the problem; the index of its parameter.
-fn check_branch<P: Problem + ?Sized>(
-    problem: &P,
-    branch: &Branch,
-) -> Result<usize, DeflationError> {
+fn check_branch(problem: &DynProblem<'_>, branch: &Branch) -> Result<usize, DeflationError> {
     let names = problem.parameters();
     let Some(which) = names.iter().position(|q| q.name == branch.parameter) else {
         return Err(DeflationError::Foreign { name: branch.parameter.clone() });

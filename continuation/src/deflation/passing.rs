@@ -3,9 +3,9 @@
 use super::DeflationSettings;
 use super::attempt::{Damping, Solver};
 use super::known::Known;
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Point};
-use crate::newton::newton;
-use crate::problem::Problem;
+use crate::newton;
 
 /// Distance from the interpolated branch, relative to the chord, within which a solution is the
 /// branch's own.
@@ -21,7 +21,7 @@ pub(super) struct Passage {
 
 impl Passage {
     /// Whether the solution `u` can be the one that is approximated.
-    pub(super) fn covers<P: Problem + ?Sized>(&self, known: &mut Known<'_, P>, u: &[f64]) -> bool {
+    pub(super) fn covers(&self, known: &mut Known<'_>, u: &[f64]) -> bool {
         let [a, b] = &self.between;
         let size = known.norm(&self.u);
         known.distance(u, &self.u) <= NEAR * known.distance(a, b) + 1e-6 * size
@@ -40,8 +40,8 @@ pub(super) struct Passing {
 ///
 /// Newton's method may lead from two passages, near a fold say, to the same solution: then it is
 /// deflated. A solution far from the passage is not the branch's.
-pub(super) fn solutions<P: Problem + ?Sized>(
-    problem: &P,
+pub(super) fn solutions(
+    problem: &DynProblem<'_>,
     branch: &Branch,
     p: &[f64],
     which: usize,
@@ -60,7 +60,7 @@ pub(super) fn solutions<P: Problem + ?Sized>(
         let [a, b] = &passage.between;
         let chord = own.distance(a, b);
         let mut u = passage.u.clone();
-        if newton(problem, &mut u, p, &limits).is_ok()
+        if newton::solve(problem, &mut u, p, &limits).is_ok()
             && passage.covers(&mut own, &u)
             && !own.contains(&u, settings.separation)
         {
@@ -86,7 +86,7 @@ pub(super) fn solutions<P: Problem + ?Sized>(
 }
 
 /// How far the branch leads from its first point.
-pub(super) fn extent<P: Problem + ?Sized>(known: &mut Known<'_, P>, branch: &Branch) -> f64 {
+pub(super) fn extent(known: &mut Known<'_>, branch: &Branch) -> f64 {
     let Some(first) = branch.points.first() else { return 0.0 };
     branch.points.iter().map(|point| known.distance(&point.u, &first.u)).fold(0.0, f64::max)
 }

@@ -6,8 +6,9 @@
 //! nonlinearity has its other solution at `2X`, a symmetric cubic one at `√3 X`, in any units.
 
 use super::known::Known;
+use crate::any_problem::DynProblem;
 use crate::linalg::{Matrix, max_abs};
-use crate::problem::{Problem, check_finite};
+use crate::problem::check_finite;
 use crate::step::dot;
 
 /// Inverse iterations; the ratio of neighbouring eigenvalues need not be resolved.
@@ -21,9 +22,9 @@ pub(super) struct Soft {
 }
 
 /// The `count` softest directions at `u`, the softest first; none where the problem has no value.
-pub(super) fn soft<P: Problem + ?Sized>(
-    problem: &P,
-    known: &mut Known<'_, P>,
+pub(super) fn soft(
+    problem: &DynProblem<'_>,
+    known: &mut Known<'_>,
     u: &[f64],
     p: &[f64],
     count: usize,
@@ -68,11 +69,7 @@ pub(super) fn soft<P: Problem + ?Sized>(
 }
 
 /// Gram-Schmidt in the problem's metric; vectors that vanish are dropped.
-fn orthonormalise<P: Problem + ?Sized>(
-    known: &mut Known<'_, P>,
-    problem: &P,
-    vectors: &mut Vec<Vec<f64>>,
-) {
+fn orthonormalise(known: &mut Known<'_>, problem: &DynProblem<'_>, vectors: &mut Vec<Vec<f64>>) {
     let mut done: Vec<Vec<f64>> = Vec::with_capacity(vectors.len());
     let mut m = vec![0.0; problem.dim()];
     for mut v in vectors.drain(..) {
@@ -96,8 +93,8 @@ fn orthonormalise<P: Problem + ?Sized>(
 
 /// The multiple of `v` at which the Jacobian's action on it has changed by as much as it is;
 /// `None` if it does not change within twelve decades of `guess`.
-pub(super) fn amplitude<P: Problem + ?Sized>(
-    problem: &P,
+pub(super) fn amplitude(
+    problem: &DynProblem<'_>,
     u: &[f64],
     p: &[f64],
     v: &[f64],

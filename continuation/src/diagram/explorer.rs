@@ -6,12 +6,13 @@ use super::settings::DiagramSettings;
 use super::{
     Diagram, DiagramBranch, DiagramError, DiagramProgress, DiagramStop, Origin, Unfinished,
 };
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, EventKind, Statistics, Stop, StopReason};
 use crate::deflation::{DeflationReport, OffBranch, off_branches};
 use crate::events::Watch;
-use crate::linalg::Matrix;
 use crate::near::{self, NearBifurcation};
-use crate::problem::DynProblem;
+use crate::problem::Problem;
+
 use crate::settings::Settings;
 use crate::tracer::{Progress, TraceError, Tracer, both};
 use std::collections::VecDeque;
@@ -43,8 +44,8 @@ const MANY: usize = 8;
 pub(super) type Observer<'o> = dyn FnMut(&DiagramProgress<'_>) -> ControlFlow<()> + 'o;
 
 /// Explores a diagram branch by branch.
-pub struct Explorer<'a, J: Matrix> {
-    problem: &'a DynProblem<'a, J>,
+pub struct Explorer<'a> {
+    problem: &'a DynProblem<'a>,
     parameter: String,
     start: (Vec<f64>, Vec<f64>),
     settings: DiagramSettings,
@@ -60,14 +61,25 @@ pub struct Explorer<'a, J: Matrix> {
     stopped: Option<DiagramStop>,
 }
 
-impl<'a, J: Matrix> Explorer<'a, J> {
+impl<'a> Explorer<'a> {
     /// Prepares the diagram of the branch through the solution near `u`, in the named parameter.
     /// `u`, `p` and `parameter` are those of [`Tracer::new`]; `watches` hold on every branch.
     ///
     /// # Errors
     /// When the settings or the start are unusable, or nothing bounds the first branch.
-    pub fn new(
-        problem: &'a DynProblem<'a, J>,
+    pub fn new<P: Problem>(
+        problem: &'a P,
+        parameter: &str,
+        u: &[f64],
+        p: &[f64],
+        settings: DiagramSettings,
+        watches: &[Watch],
+    ) -> Result<Self, DiagramError> {
+        Self::of(problem, parameter, u, p, settings, watches)
+    }
+
+    fn of(
+        problem: &'a DynProblem<'a>,
         parameter: &str,
         u: &[f64],
         p: &[f64],

@@ -1,8 +1,8 @@
 //! One branch of a diagram.
 
 use super::joints::Joints;
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, EventKind, Point, StopReason};
-use crate::problem::Problem;
 use crate::tracer::{Progress, Snapshot, Tracer};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -19,9 +19,9 @@ pub(super) type Listener<'o> =
     dyn FnMut(&Progress, Option<&dyn Fn() -> Part>) -> ControlFlow<()> + 'o;
 
 /// Traces to the end from the beginning or from `part`, or to a joint from which the branch would go on along a ray that is taken.
-pub(super) fn follow<P: Problem + ?Sized>(
-    problem: &P,
-    mut tracer: Tracer<'_, P::Jacobian>,
+pub(super) fn follow(
+    problem: &DynProblem<'_>,
+    mut tracer: Tracer<'_>,
     part: Option<Part>,
     joints: &Joints,
     observer: &mut Listener<'_>,
@@ -57,9 +57,9 @@ pub(super) fn follow<P: Problem + ?Sized>(
 }
 
 /// Whether the branch goes on from this point along a ray that is taken.
-fn leads_back<P: Problem + ?Sized>(
-    problem: &P,
-    tracer: &Tracer<'_, P::Jacobian>,
+fn leads_back(
+    problem: &DynProblem<'_>,
+    tracer: &Tracer<'_>,
     event: usize,
     point: &Point,
     joints: &Joints,

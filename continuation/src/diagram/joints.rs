@@ -1,8 +1,8 @@
 //! Branch points at which branches of a diagram meet, and the rays that begin there.
 
 use super::Joint;
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Crossing, Direction, Event};
-use crate::problem::Problem;
 use crate::step::dot;
 
 /// Two branch points nearer than this, relative to the ranges, are the same.
@@ -50,13 +50,13 @@ pub(super) struct Joints {
     range: f64,
 }
 
-fn length<P: Problem + ?Sized>(problem: &P, x: &[f64]) -> f64 {
+fn length(problem: &DynProblem<'_>, x: &[f64]) -> f64 {
     let mut y = vec![0.0; x.len()];
     problem.metric(x, &mut y);
     dot(x, &y).max(0.0).sqrt()
 }
 
-fn apart<P: Problem + ?Sized>(problem: &P, a: &[f64], b: &[f64]) -> f64 {
+fn apart(problem: &DynProblem<'_>, a: &[f64], b: &[f64]) -> f64 {
     let d: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
     length(problem, &d)
 }
@@ -67,9 +67,9 @@ impl Joints {
     }
 
     /// The joint at this branch point, if it is known.
-    pub(super) fn find<P: Problem + ?Sized>(
+    pub(super) fn find(
         &self,
-        problem: &P,
+        problem: &DynProblem<'_>,
         u: &[f64],
         p: f64,
         error: f64,
@@ -82,9 +82,9 @@ impl Joints {
     }
 
     /// The ray of `node` that leaves it along `sign` times this direction.
-    pub(super) fn ray<P: Problem + ?Sized>(
+    pub(super) fn ray(
         &self,
-        problem: &P,
+        problem: &DynProblem<'_>,
         node: usize,
         (du, dp): (&[f64], f64),
         sign: f64,
@@ -107,9 +107,9 @@ impl Joints {
 
     /// Learns that event `event` of branch `id`, a branch point, is passed; `ends` says that the
     /// branch ends there. The joint's index.
-    pub(super) fn pass<P: Problem + ?Sized>(
+    pub(super) fn pass(
         &mut self,
-        problem: &P,
+        problem: &DynProblem<'_>,
         id: usize,
         branch: &Branch,
         event: usize,
@@ -132,9 +132,9 @@ impl Joints {
         node
     }
 
-    fn create<P: Problem + ?Sized>(
+    fn create(
         &mut self,
-        problem: &P,
+        problem: &DynProblem<'_>,
         id: usize,
         branch: &Branch,
         event: usize,
@@ -178,9 +178,9 @@ impl Joints {
 
     /// Learns that branch `id` begins along a ray; `closed` says that it comes back to its
     /// beginning.
-    pub(super) fn begin<P: Problem + ?Sized>(
+    pub(super) fn begin(
         &mut self,
-        problem: &P,
+        problem: &DynProblem<'_>,
         id: usize,
         (node, ray): (usize, usize),
         closed: bool,

@@ -3,7 +3,6 @@
 //! smooth there, and passes zero at the fold.
 
 use super::locate::{bend, interpolate};
-use crate::problem::Problem;
 use crate::step::{Constraint, Core, Precision, Refusal, State};
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -58,8 +57,8 @@ impl Rung {
 
 /// Order and place of the fold near `at` in the step of length `h` from `a` to `b`, where dp/ds is in
 /// error by `missed`.
-pub(crate) fn flat_fold<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
+pub(crate) fn flat_fold(
+    core: &mut Core<'_>,
     (a, b): (&State, &State),
     h: f64,
     (mut at, missed): (f64, f64),

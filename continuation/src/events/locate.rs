@@ -9,7 +9,6 @@
 use super::detect::Candidate;
 use super::hermite::basis;
 use super::root::Search;
-use crate::problem::Problem;
 use crate::step::{Constraint, Core, Precision, Refusal, State};
 
 /// Where a special point was found; its state is in the work space handed to [`locate`].
@@ -24,8 +23,8 @@ pub(crate) struct Located {
 pub(super) const MAX_EVALUATIONS: usize = 60;
 
 /// Locates `candidate` between `a` and `b`, a scaled distance `h` apart; its state goes to `x`.
-pub(crate) fn locate<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
+pub(crate) fn locate(
+    core: &mut Core<'_>,
     a: &State,
     b: &State,
     h: f64,
@@ -129,7 +128,7 @@ fn parameter_guess(a: &State, b: &State, h: f64, bend: f64, value: f64) -> Optio
 
 /// By how much the branch's own speed exceeds that of its projection at the far end: the cosine
 /// between the tangents at both.
-pub(crate) fn bend<P: Problem + ?Sized>(core: &Core<'_, P>, a: &State, b: &State) -> f64 {
+pub(crate) fn bend(core: &Core<'_>, a: &State, b: &State) -> f64 {
     core.weights.dot(&a.mtu, a.tp, &b.tu, b.tp)
 }
 

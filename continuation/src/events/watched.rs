@@ -6,7 +6,6 @@
 use super::detect::Candidate;
 use super::locate::{Located, MAX_EVALUATIONS, bend, error_at, interpolate};
 use super::root::Search;
-use crate::problem::Problem;
 use crate::step::{Constraint, Core, Precision, Refusal, State};
 
 /// A test function below this part of its values at the ends of the step is zero, however it got
@@ -33,8 +32,8 @@ const SHORTEST: f64 = 1e-14;
 
 /// Locates a zero or an extremum of an observable between `a` and `b`, a scaled distance `h` apart;
 /// its state goes to `x`. `None` where the observable has a pole or a jump instead.
-pub(crate) fn locate_watched<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
+pub(crate) fn locate_watched(
+    core: &mut Core<'_>,
     (a, b): (&State, &State),
     h: f64,
     candidate: &Candidate,
@@ -101,8 +100,8 @@ pub(crate) fn locate_watched<P: Problem + ?Sized>(
 /// Moves an extremum by what the slope of a state that is corrected once more says, and takes as its
 /// error what that changes: a slope shows the error of a state much magnified where the tangent turns
 /// fast, and then a bracket closes about a place that is no extremum.
-fn settle<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
+fn settle(
+    core: &mut Core<'_>,
     (a, h): (&State, f64),
     (values, tolerance): (&[(f64, f64)], f64),
     value: impl Fn(&State) -> f64,

@@ -25,6 +25,7 @@
 //!   *IMA J. Numer. Anal.* 13 (1993) 161-180.
 //! - G. H. Golub and C. F. Van Loan, *Matrix Computations*, 4th ed., Johns Hopkins, 2013.
 
+mod any;
 mod arnoldi;
 mod arrow;
 mod band;
@@ -47,6 +48,7 @@ mod vector;
 
 pub(crate) use vector::max_abs;
 
+pub use any::AnyMatrix;
 pub use arnoldi::{Arnoldi, Eigenpair, Eigenpairs};
 pub use arrow::Arrow;
 pub use band::Band;
@@ -97,7 +99,7 @@ pub struct SymmetricPart {
 ///
 /// All vectors have length [`Matrix::dim`]. Nothing fails: a singular matrix is factored with its
 /// small pivots replaced, and [`Facts::perturbed`] says so.
-pub trait Matrix: Clone + Send {
+pub trait Matrix: Clone + Send + 'static {
     /// Number of rows and columns.
     fn dim(&self) -> usize;
     /// Sets all entries to zero, keeping the pattern. Factors stay.

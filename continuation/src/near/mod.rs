@@ -21,8 +21,9 @@ mod settings;
 
 pub use settings::NearSettings;
 
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Direction, EventKind};
-use crate::problem::{DynProblem, EvalError, ParamId, Problem};
+use crate::problem::{EvalError, ParamId, Problem};
 use crate::settings::SettingsError;
 use crate::singular::{Defect, Extended, Probe, find, max_abs};
 use crate::step::{Weights, dot};
@@ -129,17 +130,17 @@ pub enum NearError {
 ///
 /// # Errors
 /// When a setting is out of range or the branch is not one of this problem.
-pub fn near_bifurcations<P: Problem>(
+pub fn near_bifurcations<P: Problem + ?Sized>(
     problem: &P,
     branch: &Branch,
     settings: NearSettings,
 ) -> Result<Vec<NearBifurcation>, NearError> {
-    beside(problem as &DynProblem<'_, P::Jacobian>, branch, settings)
+    beside(&problem, branch, settings)
 }
 
 /// [`near_bifurcations`] of a problem of unknown type.
-pub(crate) fn beside<P: Problem + ?Sized>(
-    problem: &P,
+pub(crate) fn beside(
+    problem: &DynProblem<'_>,
     branch: &Branch,
     settings: NearSettings,
 ) -> Result<Vec<NearBifurcation>, NearError> {
@@ -154,7 +155,7 @@ pub(crate) fn beside<P: Problem + ?Sized>(
 }
 
 /// The index of the branch's parameter.
-fn check<P: Problem + ?Sized>(problem: &P, branch: &Branch) -> Result<usize, NearError> {
+fn check(problem: &DynProblem<'_>, branch: &Branch) -> Result<usize, NearError> {
     let foreign = |what| NearError::Foreign { what };
     let parameters = problem.parameters();
     let which = parameters
@@ -171,7 +172,7 @@ fn check<P: Problem + ?Sized>(problem: &P, branch: &Branch) -> Result<usize, Nea
 }
 
 /// The ranges of unknowns and parameter along the branch.
-fn weights<P: Problem + ?Sized>(problem: &P, branch: &Branch, which: usize) -> Weights {
+fn weights(problem: &DynProblem<'_>, branch: &Branch, which: usize) -> Weights {
     let p = || branch.points.iter().map(|point| point.p);
     let range = p().fold(f64::NEG_INFINITY, f64::max) - p().fold(f64::INFINITY, f64::min);
     let positive = |x: f64| (x.is_finite() && x > 0.0).then_some(x);
@@ -203,8 +204,8 @@ fn difference(a: &Extended, b: &Extended) -> Extended {
 }
 
 /// Imperfect branch points, where the singular value has minima.
-fn dips<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn dips(
+    probe: &mut Probe<'_>,
     branch: &Branch,
     max_gap: f64,
 ) -> Result<Vec<NearBifurcation>, NearError> {
@@ -284,8 +285,8 @@ fn around(sizes: &[f64], lowest: usize) -> Vec<usize> {
 }
 
 /// The branch point of which the branch at `z` is an unfolding, if it is one.
-fn imperfect<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn imperfect(
+    probe: &mut Probe<'_>,
     z: &Extended,
     tangent: &Extended,
     noise: f64,
@@ -326,11 +327,7 @@ fn imperfect<P: Problem + ?Sized>(
 }
 
 /// Folds in a row, the parameters of which differ little.
-fn folds<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
-    branch: &Branch,
-    max_gap: f64,
-) -> Vec<NearBifurcation> {
+fn folds(probe: &mut Probe<'_>, branch: &Branch, max_gap: f64) -> Vec<NearBifurcation> {
     let folds: Vec<_> = branch.events_of(&EventKind::Fold).collect();
     let range = probe.weights.parameter;
     let mut found = Vec::new();

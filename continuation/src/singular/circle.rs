@@ -11,7 +11,7 @@
 use super::kernel::Frame;
 use super::probe::{Extended, Probe};
 use super::roots::Forms;
-use crate::problem::{EvalError, Problem};
+use crate::problem::EvalError;
 use crate::step::dot;
 use std::f64::consts::TAU;
 
@@ -60,8 +60,8 @@ pub(super) struct Ray {
 }
 
 /// The reduced equations of a double point.
-pub(super) struct Reduced<'f, 'p, 'a, P: Problem + ?Sized> {
-    pub(super) probe: &'p mut Probe<'a, P>,
+pub(super) struct Reduced<'f, 'p, 'a> {
+    pub(super) probe: &'p mut Probe<'a>,
     pub(super) frame: &'f mut Frame,
     pub(super) z: &'f Extended,
     /// The traced branch's tangent, and the vectors across it, in natural amplitudes.
@@ -77,7 +77,7 @@ struct Solved {
     offset: Extended,
 }
 
-impl<P: Problem + ?Sized> Reduced<'_, '_, '_, P> {
+impl Reduced<'_, '_, '_> {
     /// The branches.
     pub(super) fn separate(&mut self) -> Separated {
         if self.across.len() == 2 { self.separate_two() } else { self.separate_more() }

@@ -7,7 +7,7 @@
 
 use super::kernel::{Frame, arbitrary};
 use super::probe::{Extended, Probe};
-use crate::problem::{EvalError, Problem};
+use crate::problem::EvalError;
 use crate::step::dot;
 
 /// Renewals of the borders at the first point.
@@ -26,9 +26,9 @@ impl Defect {
 
     /// The singular value at `z`, and the tangent, of unit scaled length; `None` where the bordered
     /// matrix is singular. Any vector with a part along the branch will do for `along`.
-    pub(crate) fn at<P: Problem + ?Sized>(
+    pub(crate) fn at(
         &mut self,
-        probe: &mut Probe<'_, P>,
+        probe: &mut Probe<'_>,
         z: &Extended,
         along: &Extended,
     ) -> Result<Option<(f64, Extended)>, EvalError> {
@@ -43,11 +43,7 @@ impl Defect {
         Ok(found)
     }
 
-    fn begin<P: Problem + ?Sized>(
-        &mut self,
-        probe: &mut Probe<'_, P>,
-        along: &Extended,
-    ) -> Option<()> {
+    fn begin(&mut self, probe: &mut Probe<'_>, along: &Extended) -> Option<()> {
         let n = probe.dim();
         let row = probe.covector(along);
         self.frame.set_row(0, &row);
@@ -64,7 +60,7 @@ impl Defect {
     }
 
     /// Value and tangent from the latest factors, and borders for the next point.
-    fn renew<P: Problem + ?Sized>(&mut self, probe: &mut Probe<'_, P>) -> Option<(f64, Extended)> {
+    fn renew(&mut self, probe: &mut Probe<'_>) -> Option<(f64, Extended)> {
         let mut column: Vec<f64> = self.frame.left(probe, 0);
         let (mut v0, g0) = self.frame.right(probe, 0);
         let (mut v1, g1) = self.frame.right(probe, 1);

@@ -10,7 +10,7 @@ use super::kernel::{Frame, arbitrary};
 use super::max_abs;
 use super::probe::{Extended, Probe};
 use crate::linalg::Matrix;
-use crate::problem::{EvalError, Problem};
+use crate::problem::EvalError;
 use crate::step::{Weights, dot};
 use faer::Mat;
 
@@ -38,8 +38,8 @@ const CORRECTIONS: usize = 6;
 
 /// The rank defect that `[F_u F_p]` has at `z` and at every solution near by, if it has one. No state
 /// outside `domain` is asked for.
-pub(crate) fn deficient_everywhere<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+pub(crate) fn deficient_everywhere(
+    probe: &mut Probe<'_>,
     z: &Extended,
     domain: Option<(f64, f64)>,
 ) -> Option<usize> {
@@ -68,8 +68,8 @@ pub(crate) fn deficient_everywhere<P: Problem + ?Sized>(
 
 /// Prepares the borders at `z`; whether the bordered matrix is regular, `None` if it is so singular
 /// that nothing can be said.
-fn begin<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn begin(
+    probe: &mut Probe<'_>,
     frame: &mut Frame,
     z: &Extended,
     k: usize,
@@ -102,7 +102,7 @@ fn begin<P: Problem + ?Sized>(
 }
 
 /// A direction without any pattern, of about unit length in the scaled metric.
-fn direction<P: Problem + ?Sized>(probe: &mut Probe<'_, P>, seed: usize) -> Extended {
+fn direction(probe: &mut Probe<'_>, seed: usize) -> Extended {
     let n = probe.dim();
     let mut d = Extended { u: (0..n).map(|m| arbitrary(seed, m)).collect(), p: 0.0 };
     let norm = probe.norm(&d);
@@ -114,7 +114,7 @@ fn direction<P: Problem + ?Sized>(probe: &mut Probe<'_, P>, seed: usize) -> Exte
 }
 
 /// `[F_u F_p] x` at the assembled point.
-fn product<P: Problem + ?Sized>(probe: &Probe<'_, P>, x: &Extended) -> Vec<f64> {
+fn product(probe: &Probe<'_>, x: &Extended) -> Vec<f64> {
     let mut y = vec![0.0; x.u.len()];
     probe.jacobian.mul(&x.u, &mut y);
     for (y, f) in y.iter_mut().zip(&probe.by_parameter) {
@@ -124,7 +124,7 @@ fn product<P: Problem + ?Sized>(probe: &Probe<'_, P>, x: &Extended) -> Vec<f64> 
 }
 
 /// Size of the rows of `[F_u F_p]`, for unknowns and parameter in units of their scales.
-fn row_sizes<P: Problem + ?Sized>(probe: &mut Probe<'_, P>) -> Vec<f64> {
+fn row_sizes(probe: &mut Probe<'_>) -> Vec<f64> {
     let mut sizes = vec![0.0_f64; probe.dim()];
     for seed in 11..14 {
         let d = direction(probe, seed);
@@ -136,12 +136,7 @@ fn row_sizes<P: Problem + ?Sized>(probe: &mut Probe<'_, P>) -> Vec<f64> {
 }
 
 /// Whether what the borders hold is the kernel to rounding.
-fn vanishes<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
-    frame: &mut Frame,
-    at: &Extended,
-    k: usize,
-) -> bool {
+fn vanishes(probe: &mut Probe<'_>, frame: &mut Frame, at: &Extended, k: usize) -> bool {
     let rows = row_sizes(probe);
     let left: Vec<Vec<f64>> = (0..k).map(|j| frame.left(probe, j)).collect();
     (0..=k).all(|i| {
@@ -160,8 +155,8 @@ fn vanishes<P: Problem + ?Sized>(
 }
 
 /// Whether the kernel is as large at solutions near `z`, on all sides.
-fn near_by<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn near_by(
+    probe: &mut Probe<'_>,
     frame: &mut Frame,
     z: &Extended,
     k: usize,
@@ -196,8 +191,8 @@ fn near_by<P: Problem + ?Sized>(
 
 /// Whether the kernel is as large at the solution near `at` of the equations that are left; `None`
 /// where there is none.
-fn onto<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn onto(
+    probe: &mut Probe<'_>,
     frame: &mut Frame,
     at: &mut Extended,
     z: &Extended,
@@ -249,7 +244,7 @@ struct Ranked {
 
 impl Ranked {
     /// At the assembled point `at`.
-    fn of<P: Problem + ?Sized>(probe: &mut Probe<'_, P>, at: &Extended) -> Option<Self> {
+    fn of(probe: &mut Probe<'_>, at: &Extended) -> Option<Self> {
         let n = probe.dim();
         let Weights { unknowns, parameter } = probe.weights;
         let mut columns: Vec<f64> = vec![unknowns; n];
@@ -313,11 +308,7 @@ impl Ranked {
 }
 
 /// [`deficient_everywhere`] by singular values.
-fn of_small<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
-    z: &Extended,
-    domain: Option<(f64, f64)>,
-) -> Option<usize> {
+fn of_small(probe: &mut Probe<'_>, z: &Extended, domain: Option<(f64, f64)>) -> Option<usize> {
     probe.assemble(z).ok()?;
     let k = Ranked::of(probe, z)?.deficiency;
     if k == 0 {
@@ -354,8 +345,8 @@ fn of_small<P: Problem + ?Sized>(
 }
 
 /// The solution, no farther than `far`, of the equations that are left.
-fn solve_small<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn solve_small(
+    probe: &mut Probe<'_>,
     mut at: Extended,
     far: f64,
     k: usize,

@@ -3,13 +3,13 @@
 use super::plateau::settle;
 use super::probe::{Extended, Probe};
 use crate::branch::FoldForm;
-use crate::problem::{EvalError, Problem};
+use crate::problem::EvalError;
 use crate::step::{State, dot};
 
 /// `p″ = −ψᵀ F_zz[t, t] / ψᵀ F_p` along the unit tangent `t`, with `left` = `ψ / ψᵀ F_p`; and a bound of
 /// what errors of the problem's derivatives do to dp/ds.
-pub(crate) fn fold_form<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+pub(crate) fn fold_form(
+    probe: &mut Probe<'_>,
     x: &State,
     left: &[f64],
 ) -> Result<(FoldForm, f64), EvalError> {

@@ -13,7 +13,7 @@ use super::plateau::settle;
 use super::probe::{Extended, FIRST, Probe};
 use crate::branch::{Criticality, Crossing, Direction, Shape};
 use crate::linalg::Matrix;
-use crate::problem::{EvalError, Problem, Stability};
+use crate::problem::{EvalError, Stability};
 use crate::step::dot;
 
 /// A tangent whose parameter part, per natural amplitude and range, is below this is vertical.
@@ -34,8 +34,8 @@ pub(super) struct Analysed {
 
 /// Analyses a point with a kernel of one dimension; `expected` is the direction in which the
 /// traced branch passes.
-pub(super) fn simple<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+pub(super) fn simple(
+    probe: &mut Probe<'_>,
     at: &mut Singular,
     expected: &Extended,
 ) -> Result<Option<Analysed>, EvalError> {
@@ -108,8 +108,8 @@ pub(super) fn simple<P: Problem + ?Sized>(
 }
 
 /// A tangent of unit length in the problem's metric.
-pub(super) fn direction<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+pub(super) fn direction(
+    probe: &mut Probe<'_>,
     mut v: Extended,
     bend: f64,
     amplitude: f64,
@@ -151,8 +151,8 @@ struct Bent {
     criticality: Option<Criticality>,
 }
 
-fn pitchfork<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn pitchfork(
+    probe: &mut Probe<'_>,
     at: &mut Singular,
     trunk: &Extended,
     fork: &Extended,

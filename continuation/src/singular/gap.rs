@@ -11,7 +11,7 @@
 
 use super::kernel::{Singular, arbitrary};
 use super::probe::{Extended, Probe};
-use crate::problem::{EvalError, Problem};
+use crate::problem::EvalError;
 use crate::step::dot;
 
 /// States at which the rounding errors are sampled.
@@ -24,10 +24,7 @@ const FACTOR: f64 = 4.0;
 
 /// Distance between the two branches, in the scaled metric: 0 where they cross, to rounding, infinite
 /// where there is nothing real.
-pub(super) fn between_branches<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
-    found: &Singular,
-) -> Result<f64, EvalError> {
+pub(super) fn between_branches(probe: &mut Probe<'_>, found: &Singular) -> Result<f64, EvalError> {
     let (psi, z) = (&found.left[0], &found.z);
     let defect = dot(psi, probe.residual_at(z)?);
     if defect == 0.0 || found.gap == 0.0 {

@@ -10,8 +10,8 @@ use super::plateau::settle;
 use super::probe::{Extended, Probe};
 use crate::branch::{Criticality, Eigenvector, HopfForm};
 use crate::events::{bend, interpolate};
-use crate::linalg::{Bordered, Matrix};
-use crate::problem::{EvalError, Problem};
+use crate::linalg::{AnyMatrix, Bordered, Matrix};
+use crate::problem::EvalError;
 use crate::step::{Constraint, Core, Precision, Refusal, State, dot};
 
 const MAX_ITERATIONS: usize = 10;
@@ -29,8 +29,8 @@ pub(crate) struct HopfPoint {
 
 /// Polishes a Hopf point near the scaled distance `at` from `a`, with eigenvalues near `±iω`.
 /// `None` where the matrix has no complex form; the bracketing search then has the last word.
-pub(crate) fn locate_hopf<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
+pub(crate) fn locate_hopf(
+    core: &mut Core<'_>,
     a: &State,
     b: &State,
     h: f64,
@@ -40,7 +40,7 @@ pub(crate) fn locate_hopf<P: Problem + ?Sized>(
 ) -> Result<Option<HopfPoint>, Refusal> {
     let mut probe = core.probe();
     let bend = bend(core, a, b);
-    let mut critical: Option<Critical<P>> = None;
+    let mut critical: Option<Critical> = None;
     let mut last = f64::INFINITY;
     for _ in 0..MAX_ITERATIONS {
         interpolate(a, b, h, bend, at, x);
@@ -125,20 +125,20 @@ impl Complex {
 }
 
 /// Null vectors of `f_u − iω M`, bordered.
-struct Critical<P: Problem + ?Sized> {
+struct Critical {
     right: Complex,
     left: Complex,
     /// `M` times the right vector.
     mass_right: Complex,
     g: (f64, f64),
     /// `f_u − iω M`, and the mass matrix, where it is not the identity.
-    mass: Mass<P>,
+    mass: Mass,
 }
 
-impl<P: Problem + ?Sized> Critical<P> {
+impl Critical {
     /// Bordered null vectors at an assembled point; borders from before, or arbitrary ones that
     /// are improved once.
-    fn of(probe: &Probe<'_, P>, omega: f64, border: Option<(Complex, Complex)>) -> Option<Self> {
+    fn of(probe: &Probe<'_>, omega: f64, border: Option<(Complex, Complex)>) -> Option<Self> {
         let n = probe.dim();
         let mass = Mass::of(probe)?;
         let mut matrix = mass.shifted(probe, omega)?;
@@ -193,7 +193,7 @@ impl<P: Problem + ?Sized> Critical<P> {
     }
 
     /// A bound of what errors of the problem's own derivatives change of `g`.
-    fn missed(&self, probe: &mut Probe<'_, P>, z: &Extended) -> Result<f64, EvalError> {
+    fn missed(&self, probe: &mut Probe<'_>, z: &Extended) -> Result<f64, EvalError> {
         let (re, im) = self.parts();
         let errors = [probe.derivative_error(z, &re)?, probe.derivative_error(z, &im)?];
         let size = |(w, (a, b)): (&[f64], (&f64, &f64))| w[0].hypot(w[1]) * (a + b);
@@ -208,10 +208,10 @@ impl<P: Problem + ?Sized> Critical<P> {
 }
 
 /// The mass matrix; the identity where the problem has none.
-struct Mass<P: Problem + ?Sized>(P::Jacobian);
+struct Mass(AnyMatrix);
 
-impl<P: Problem + ?Sized> Mass<P> {
-    fn of(probe: &Probe<'_, P>) -> Option<Self> {
+impl Mass {
+    fn of(probe: &Probe<'_>) -> Option<Self> {
         let mut m = probe.problem.new_jacobian();
         m.set_zero();
         if !probe.problem.mass(&mut m) {
@@ -224,7 +224,7 @@ impl<P: Problem + ?Sized> Mass<P> {
     }
 
     /// `f_u − iω M` in real form.
-    fn shifted(&self, probe: &Probe<'_, P>, omega: f64) -> Option<P::Jacobian> {
+    fn shifted(&self, probe: &Probe<'_>, omega: f64) -> Option<AnyMatrix> {
         let mut imaginary = self.0.clone();
         imaginary.set_zero();
         imaginary.axpy(-omega, &self.0);
@@ -241,12 +241,12 @@ impl<P: Problem + ?Sized> Mass<P> {
 }
 
 /// The normal form at a located point; `t` is the branch's tangent there.
-fn normal_form<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn normal_form(
+    probe: &mut Probe<'_>,
     z: &Extended,
     t: &Extended,
     omega: f64,
-    critical: &Critical<P>,
+    critical: &Critical,
 ) -> Result<Option<HopfForm>, EvalError> {
     let (a, b, p) = critical.eigenvectors();
     let by_branch = probe.second(z, t, 1.0, &[&a, &b])?;
@@ -267,8 +267,8 @@ fn normal_form<P: Problem + ?Sized>(
 /// The first Lyapunov coefficient and its estimated error at `z`, where `probe` is assembled, with
 /// critical eigenvalues `±iω` and the null vectors of `f_u − iωM`, their real and imaginary parts in
 /// turn. `None` where the matrix has no complex form.
-pub(crate) fn lyapunov_coefficient<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+pub(crate) fn lyapunov_coefficient(
+    probe: &mut Probe<'_>,
     z: &Extended,
     omega: f64,
     right: &[f64],
@@ -302,11 +302,11 @@ pub(crate) fn lyapunov_coefficient<P: Problem + ?Sized>(
     Ok(Some((value, (value - check).abs())))
 }
 
-fn lyapunov<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn lyapunov(
+    probe: &mut Probe<'_>,
     z: &Extended,
     omega: f64,
-    critical: &Critical<P>,
+    critical: &Critical,
     p: &Complex,
     (a, b): (&Extended, &Extended),
     amplitude: f64,

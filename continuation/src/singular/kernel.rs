@@ -17,7 +17,7 @@
 use super::probe::{Extended, Probe};
 use super::small::least_squares;
 use crate::linalg::{Bordered, Dense, Matrix};
-use crate::problem::{EvalError, Problem};
+use crate::problem::EvalError;
 
 const MAX_ITERATIONS: usize = 14;
 /// Corrections below this, in natural amplitudes, have converged.
@@ -114,17 +114,13 @@ impl Frame {
         self.bordered.column_mut(j + 1).copy_from_slice(b);
     }
 
-    pub(super) fn factor<P: Problem + ?Sized>(&mut self, probe: &mut Probe<'_, P>) {
+    pub(super) fn factor(&mut self, probe: &mut Probe<'_>) {
         self.bordered.column_mut(0).copy_from_slice(&probe.by_parameter);
         self.bordered.factor(&mut probe.jacobian);
     }
 
     /// Column `i` of `V`, and of `G`.
-    pub(super) fn right<P: Problem + ?Sized>(
-        &mut self,
-        probe: &mut Probe<'_, P>,
-        i: usize,
-    ) -> (Extended, Vec<f64>) {
+    pub(super) fn right(&mut self, probe: &mut Probe<'_>, i: usize) -> (Extended, Vec<f64>) {
         self.rhs.fill(0.0);
         self.tail.fill(0.0);
         self.tail[i] = 1.0;
@@ -133,11 +129,7 @@ impl Frame {
     }
 
     /// Row `j` of `W`.
-    pub(super) fn left<P: Problem + ?Sized>(
-        &mut self,
-        probe: &mut Probe<'_, P>,
-        j: usize,
-    ) -> Vec<f64> {
+    pub(super) fn left(&mut self, probe: &mut Probe<'_>, j: usize) -> Vec<f64> {
         self.rhs.fill(0.0);
         self.tail.fill(0.0);
         self.tail[j + 1] = 1.0;
@@ -146,11 +138,7 @@ impl Frame {
     }
 
     /// Solves `K [x; β] = [r; 0]`.
-    pub(crate) fn solve<P: Problem + ?Sized>(
-        &mut self,
-        probe: &mut Probe<'_, P>,
-        r: &[f64],
-    ) -> (Extended, Vec<f64>) {
+    pub(crate) fn solve(&mut self, probe: &mut Probe<'_>, r: &[f64]) -> (Extended, Vec<f64>) {
         self.rhs.copy_from_slice(r);
         self.tail.fill(0.0);
         self.bordered.solve(&mut probe.jacobian, &mut self.rhs, &mut self.tail);
@@ -159,7 +147,7 @@ impl Frame {
 
     /// Borders by what the latest factors say is nearly in the kernels: the right vectors,
     /// orthonormalised, and the left ones, normalised.
-    pub(super) fn renew<P: Problem + ?Sized>(&mut self, probe: &mut Probe<'_, P>) -> Option<()> {
+    pub(super) fn renew(&mut self, probe: &mut Probe<'_>) -> Option<()> {
         let mut right: Vec<Extended> = Vec::with_capacity(self.k + 1);
         for i in 0..=self.k {
             let (mut v, _) = self.right(probe, i);
@@ -190,11 +178,7 @@ impl Frame {
     /// Turns the right vectors within their span so that the first is the nearest to `direction`:
     /// where they mix the branch with what leaves it, the form's entries must cancel to tell the two
     /// apart, and differences along a mixture are no better than its natural amplitude allows.
-    fn turn<P: Problem + ?Sized>(
-        &mut self,
-        probe: &mut Probe<'_, P>,
-        direction: &Extended,
-    ) -> Option<()> {
+    fn turn(&mut self, probe: &mut Probe<'_>, direction: &Extended) -> Option<()> {
         let along = probe.covector(direction);
         let right: Vec<Extended> = (0..=self.k).map(|i| self.right(probe, i).0).collect();
         let mut first = Extended::zero(direction.u.len());
@@ -242,12 +226,12 @@ pub(crate) fn arbitrary(seed: usize, i: usize) -> f64 {
 /// Finds the point near `seed` where the rank is short by `k`; `tangent` is a direction of the
 /// branch that is followed. `is_useless` says of a state, and of the radius about it in which the
 /// point will lie, whether it is none that is sought.
-pub(crate) fn find<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+pub(crate) fn find(
+    probe: &mut Probe<'_>,
     seed: &Extended,
     tangent: &Extended,
     k: usize,
-    is_useless: impl Fn(&mut Probe<'_, P>, &Extended, f64) -> bool,
+    is_useless: impl Fn(&mut Probe<'_>, &Extended, f64) -> bool,
 ) -> Result<Singular, Failure> {
     let n = probe.dim();
     let mut z = seed.clone();
@@ -319,8 +303,8 @@ pub(crate) fn find<P: Problem + ?Sized>(
     Err(Failure::NoConvergence)
 }
 
-fn finish<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn finish(
+    probe: &mut Probe<'_>,
     mut frame: Frame,
     z: Extended,
     mut amplitude: Vec<f64>,
@@ -377,8 +361,8 @@ type Form = Vec<Vec<Vec<f64>>>;
 
 impl Local {
     /// `known` is the form of a point near by, whose differences are saved.
-    fn of<P: Problem + ?Sized>(
-        probe: &mut Probe<'_, P>,
+    fn of(
+        probe: &mut Probe<'_>,
         frame: &mut Frame,
         z: &Extended,
         amplitude: &mut Vec<f64>,
@@ -460,8 +444,8 @@ impl Local {
 }
 
 /// `form[j][i][l] = w_jᵀ F_zz[v_i, v_l]`, by differences along each right vector.
-fn quadratic_form<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn quadratic_form(
+    probe: &mut Probe<'_>,
     z: &Extended,
     (right, left): (&[Extended], &[Vec<f64>]),
     amplitude: &[f64],
@@ -492,8 +476,8 @@ fn quadratic_form<P: Problem + ?Sized>(
 
 /// Natural amplitudes of the right vectors, measured against what the branch's own direction does
 /// to the Jacobian over the range of the parameter.
-fn amplitudes<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn amplitudes(
+    probe: &mut Probe<'_>,
     z: &Extended,
     right: &[Extended],
     tangent: &Extended,

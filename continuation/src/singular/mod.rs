@@ -30,7 +30,6 @@ pub(crate) use start::{Begun, SAME_PARAMETER, branch_point_at};
 
 use crate::branch::Crossing;
 use crate::events::{bend, interpolate};
-use crate::problem::Problem;
 use crate::step::{Core, Refusal, State};
 use kernel::Failure;
 
@@ -74,8 +73,8 @@ struct Segment<'s> {
 /// Locates the branch point with a kernel of `k` dimensions between `a` and `b`, a scaled length
 /// `h` apart, or the `k` simple ones that lie there close together. Newton's method starts at the
 /// parts `seeds` of the step, in turn.
-pub(crate) fn locate_branch_points<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
+pub(crate) fn locate_branch_points(
+    core: &mut Core<'_>,
     a: &State,
     b: &State,
     h: f64,
@@ -119,8 +118,8 @@ pub(crate) fn locate_branch_points<P: Problem + ?Sized>(
 }
 
 /// The same of a simple one that is known to be near `state`, a state of the branch between `a` and `b`.
-pub(crate) fn locate_branch_point_near<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
+pub(crate) fn locate_branch_point_near(
+    core: &mut Core<'_>,
     (a, b): (&State, &State),
     h: f64,
     state: &State,
@@ -148,16 +147,16 @@ fn distinct(mut points: Vec<Crossed>, k: usize) -> Option<Vec<Crossed>> {
 
 /// Newton's method from `z`; the point found must be on the branch, within the step, and be crossed
 /// along the branch.
-fn attempt<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
-    probe: &mut Probe<'_, P>,
+fn attempt(
+    core: &mut Core<'_>,
+    probe: &mut Probe<'_>,
     segment: Segment<'_>,
     z: &Extended,
     k: usize,
     x: &mut State,
 ) -> Result<Crossed, Failure> {
     let Segment { a, b, h, bend, final_say } = segment;
-    let along = |probe: &mut Probe<'_, P>, z: &Extended| {
+    let along = |probe: &mut Probe<'_>, z: &Extended| {
         let mut d = z.clone();
         d.add(-1.0, &Extended { u: a.u.clone(), p: a.p });
         probe.covector(&Extended { u: a.tu.clone(), p: a.tp }).dot(&d)
@@ -165,7 +164,7 @@ fn attempt<P: Problem + ?Sized>(
     let seed = along(probe, z).clamp(0.0, h);
     let tangent = tangent_at(probe, a, b, h, bend, seed);
     // what lies beyond both neighbours of the step says nothing of it
-    let astray = |probe: &mut Probe<'_, P>, z: &Extended, radius: f64| {
+    let astray = |probe: &mut Probe<'_>, z: &Extended, radius: f64| {
         let at = along(probe, z);
         let beyond = (-h - at).max(at - 2.0 * h);
         beyond > FAR * radius
@@ -229,7 +228,7 @@ fn attempt<P: Problem + ?Sized>(
         if distance < 1e-3 * h {
             continue;
         }
-        let cosine = |probe: &mut Probe<'_, P>, v: &Extended| {
+        let cosine = |probe: &mut Probe<'_>, v: &Extended| {
             let norm = probe.norm(v) * distance;
             probe.covector(v).dot(&side).abs() / norm
         };
@@ -249,14 +248,7 @@ fn attempt<P: Problem + ?Sized>(
 }
 
 /// Direction of the interpolated branch at a distance `at`, of unit scaled length.
-fn tangent_at<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
-    a: &State,
-    b: &State,
-    h: f64,
-    bend: f64,
-    at: f64,
-) -> Extended {
+fn tangent_at(probe: &mut Probe<'_>, a: &State, b: &State, h: f64, bend: f64, at: f64) -> Extended {
     let t = at / h;
     // slopes of the Hermite basis
     let (g0, g1) = (6.0 * t * t - 6.0 * t, 6.0 * t - 6.0 * t * t);

@@ -13,7 +13,7 @@ use super::probe::{Extended, Probe};
 use super::roots::{Forms, solutions};
 use super::small::least_squares;
 use crate::branch::{Crossing, Direction, Offset, Shape};
-use crate::problem::{EvalError, Problem};
+use crate::problem::EvalError;
 use crate::step::dot;
 
 /// Quadratic terms below this part of the linear ones are rounding.
@@ -21,8 +21,8 @@ const NO_QUADRATIC: f64 = 1e-5;
 
 /// Analyses a point with a kernel of several dimensions; `expected` is the direction in which the
 /// traced branch passes.
-pub(super) fn analyse<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+pub(super) fn analyse(
+    probe: &mut Probe<'_>,
     at: &mut Singular,
     expected: &Extended,
 ) -> Result<Option<Analysed>, EvalError> {
@@ -143,8 +143,8 @@ pub(super) fn analyse<P: Problem + ?Sized>(
 
 /// What tells directions apart that solve the cubic equations all alike: `vectors` across the traced
 /// tangent, with the linear forms `a` there.
-fn beyond_cubic<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn beyond_cubic(
+    probe: &mut Probe<'_>,
     at: &mut Singular,
     (traced, vectors, a): (&Extended, &[Extended], &Forms),
     from_side: bool,
@@ -158,8 +158,8 @@ fn beyond_cubic<P: Problem + ?Sized>(
 
 /// Symmetric cubic coefficients of the reduced equations on `vectors`, and the parameter's part of
 /// the second-order corrections `h`.
-fn cubic_terms<P: Problem + ?Sized>(
-    probe: &mut Probe<'_, P>,
+fn cubic_terms(
+    probe: &mut Probe<'_>,
     at: &mut Singular,
     vectors: &[Extended],
 ) -> Result<(Forms, Vec<Vec<f64>>), EvalError> {

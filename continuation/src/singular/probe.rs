@@ -4,8 +4,9 @@
 //! Differences of exact Jacobians: the first derivative over four points is right to about 1e-12,
 //! the second to about 1e-8, of what the nonlinearity does over its natural amplitude.
 
-use crate::linalg::Matrix;
-use crate::problem::{EvalError, ParamId, Problem, check_finite, check_pattern};
+use crate::any_problem::DynProblem;
+use crate::linalg::{AnyMatrix, Matrix};
+use crate::problem::{EvalError, ParamId, check_finite, check_pattern};
 use crate::step::{Guard, Weights, dot};
 use serde::{Deserialize, Serialize};
 
@@ -56,26 +57,31 @@ pub(super) struct Bending {
 }
 
 /// Evaluates a problem near a point; allocated when a special point is analysed.
-pub(crate) struct Probe<'a, P: Problem + ?Sized> {
-    pub(crate) problem: &'a P,
+pub(crate) struct Probe<'a> {
+    pub(crate) problem: &'a DynProblem<'a>,
     pub(crate) which: ParamId,
     pub(crate) weights: Weights,
     guard: Guard,
-    pub(crate) jacobian: P::Jacobian,
+    pub(crate) jacobian: AnyMatrix,
     pub(crate) residual: Vec<f64>,
     pub(crate) by_parameter: Vec<f64>,
     /// Jacobian assemblies so far.
     pub(crate) assemblies: usize,
     p: Vec<f64>,
-    shifted: P::Jacobian,
+    shifted: AnyMatrix,
     place: Vec<f64>,
     slope: Vec<f64>,
     product: Vec<f64>,
     metric: Vec<f64>,
 }
 
-impl<'a, P: Problem + ?Sized> Probe<'a, P> {
-    pub(crate) fn new(problem: &'a P, which: ParamId, p: &[f64], weights: Weights) -> Self {
+impl<'a> Probe<'a> {
+    pub(crate) fn new(
+        problem: &'a DynProblem<'a>,
+        which: ParamId,
+        p: &[f64],
+        weights: Weights,
+    ) -> Self {
         let n = problem.dim();
         let vector = || vec![0.0; n];
         Probe {

@@ -3,7 +3,6 @@
 use super::probe::Extended;
 use super::{MAX_GAP, forms, kernel, multiple};
 use crate::branch::Crossing;
-use crate::problem::Problem;
 use crate::step::{Core, State};
 
 /// Largest kernel that is looked for.
@@ -25,8 +24,8 @@ pub(crate) struct Begun {
 
 /// Whether the branch point near `x` is `x`, at the same parameter; then `x` becomes it, its tangent
 /// that of the branch that follows the parameter most, upwards if `increasing`.
-pub(crate) fn branch_point_at<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
+pub(crate) fn branch_point_at(
+    core: &mut Core<'_>,
     x: &mut State,
     increasing: bool,
 ) -> Option<Begun> {

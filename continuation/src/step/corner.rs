@@ -10,7 +10,6 @@ use super::corrector::{Constraint, Core};
 use super::judge::Quality;
 use super::{Refusal, State};
 use crate::events::interpolate;
-use crate::problem::Problem;
 
 /// Angle between secant and tangent, in radians, below which a step is not refused for its angles alone.
 const VISIBLE: f64 = 0.025;
@@ -40,7 +39,7 @@ const BESIDE: f64 = 1.0 / 30.0;
 /// of 0.35 radians 1/1000.
 const BOW: f64 = 1.0 / 80.0;
 
-impl<P: Problem + ?Sized> Core<'_, P> {
+impl Core<'_> {
     /// Whether the step of scaled length `h` from `a` to `b`, whose factors are the latest, cuts a
     /// corner; `secant` and `tangents` as in [`super::judge`].
     pub(crate) fn cuts_a_corner(

@@ -10,9 +10,10 @@ mod nearly_singular;
 
 use super::stability::StabilityCount;
 use super::{Guard, Refusal, State, Weights};
+use crate::any_problem::DynProblem;
 use crate::branch::Statistics;
-use crate::linalg::{Bordered, BorderedFacts, max_abs};
-use crate::problem::{EvalError, ParamId, Problem, check_finite, check_pattern};
+use crate::linalg::{AnyMatrix, Bordered, BorderedFacts, max_abs};
+use crate::problem::{EvalError, ParamId, check_finite, check_pattern};
 use crate::settings::Settings;
 use crate::singular::{Extended, Probe, arbitrary};
 use crate::suspect::{WrongDerivative, wrong_derivative};
@@ -59,8 +60,8 @@ const STEEP: f64 = 1e2;
 const STANDS_STILL: f64 = 1e-6;
 
 /// The problem, its matrices and all work space of the tracer.
-pub(crate) struct Core<'a, P: Problem + ?Sized> {
-    pub(crate) problem: &'a P,
+pub(crate) struct Core<'a> {
+    pub(crate) problem: &'a DynProblem<'a>,
     pub(crate) which: ParamId,
     pub(crate) weights: Weights,
     guard: Guard,
@@ -70,10 +71,10 @@ pub(crate) struct Core<'a, P: Problem + ?Sized> {
     tolerance: f64,
     max_iterations: usize,
     p: Vec<f64>,
-    jacobian: P::Jacobian,
+    jacobian: AnyMatrix,
     bordered: Bordered,
     facts: Option<BorderedFacts>,
-    stability: StabilityCount<P>,
+    stability: StabilityCount,
     r: Vec<f64>,
     du: Vec<f64>,
     mdu: Vec<f64>,
@@ -83,14 +84,14 @@ pub(crate) struct Core<'a, P: Problem + ?Sized> {
 
 /// The scale of the parameter at the start of a curve of special points, of which no range is
 /// expected: the value that it has there, or what is typical of it where that is nearly zero.
-pub(crate) fn curve_scale<P: Problem + ?Sized>(problem: &P, which: ParamId, start: f64) -> f64 {
+pub(crate) fn curve_scale(problem: &DynProblem<'_>, which: ParamId, start: f64) -> f64 {
     let typical = problem.parameters()[which.0].scale.abs();
     if start.abs() > 1e-6 * typical { start.abs() } else { typical }
 }
 
-impl<'a, P: Problem + ?Sized> Core<'a, P> {
+impl<'a> Core<'a> {
     pub(crate) fn new(
-        problem: &'a P,
+        problem: &'a DynProblem<'a>,
         which: ParamId,
         p: &[f64],
         weights: Weights,
@@ -480,7 +481,7 @@ impl<'a, P: Problem + ?Sized> Core<'a, P> {
     }
 
     /// For the analysis of a special point near by.
-    pub(crate) fn probe(&self) -> Probe<'a, P> {
+    pub(crate) fn probe(&self) -> Probe<'a> {
         Probe::new(self.problem, self.which, &self.p, self.weights).within(self.guard)
     }
 

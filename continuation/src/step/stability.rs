@@ -6,9 +6,10 @@
 //! eigenvalues by iteration, which is a lower bound and no more.
 
 use super::State;
-use crate::linalg::Matrix;
+use crate::any_problem::DynProblem;
+use crate::linalg::{AnyMatrix, Matrix};
 use crate::modes::{ModeSolver, has_certain_signs, zero};
-use crate::problem::{ParamId, Problem, Stability};
+use crate::problem::{ParamId, Stability};
 use crate::settings::Counting;
 
 /// Eigenvalues computed at every point where nothing else tells the stability.
@@ -17,20 +18,20 @@ const FEW: usize = 10;
 const MOST: usize = 24;
 
 /// Counts unstable modes of one problem.
-pub(crate) struct StabilityCount<P: Problem + ?Sized> {
+pub(crate) struct StabilityCount {
     sense: Stability,
     multipliers: usize,
     /// Number of eigenvalues that are reported at every point.
     wanted: usize,
-    solver: ModeSolver<P>,
+    solver: ModeSolver,
     /// Where stability is not read from the Jacobian.
-    hessian: Option<P::Jacobian>,
+    hessian: Option<AnyMatrix>,
     /// Number of unstable ones among the latest few eigenvalues.
     pub(super) last: usize,
 }
 
-impl<P: Problem + ?Sized> StabilityCount<P> {
-    pub(crate) fn new(problem: &P, wanted: usize, counting: Counting) -> Self {
+impl StabilityCount {
+    pub(crate) fn new(problem: &DynProblem<'_>, wanted: usize, counting: Counting) -> Self {
         StabilityCount {
             sense: problem.stability(),
             multipliers: problem.multipliers(),
@@ -50,8 +51,8 @@ impl<P: Problem + ?Sized> StabilityCount<P> {
     /// The eigenvalues that are reported at a state; the Jacobian there is assembled.
     pub(crate) fn eigenvalues(
         &mut self,
-        problem: &P,
-        jacobian: &mut P::Jacobian,
+        problem: &DynProblem<'_>,
+        jacobian: &mut AnyMatrix,
         (u, p): (&[f64], &[f64]),
         values: &mut Vec<(f64, f64)>,
     ) {
@@ -68,8 +69,8 @@ impl<P: Problem + ?Sized> StabilityCount<P> {
     /// Sets the counts at `x`, whose Jacobian is factored.
     pub(crate) fn judge(
         &mut self,
-        problem: &P,
-        jacobian: &mut P::Jacobian,
+        problem: &DynProblem<'_>,
+        jacobian: &mut AnyMatrix,
         inertia: Option<(usize, usize)>,
         (which, p): (ParamId, &mut [f64]),
         x: &mut State,
@@ -135,7 +136,7 @@ impl<P: Problem + ?Sized> StabilityCount<P> {
     }
 
     /// The number of eigenvalues on the unstable side, where the symmetric part decides it.
-    fn by_symmetric_part(&mut self, jacobian: &mut P::Jacobian, energy: bool) -> Option<usize> {
+    fn by_symmetric_part(&mut self, jacobian: &mut AnyMatrix, energy: bool) -> Option<usize> {
         if self.sense == Stability::None || !self.solver.mass_is_definite() {
             return None;
         }
@@ -170,11 +171,11 @@ impl<P: Problem + ?Sized> StabilityCount<P> {
 
 /// Assembles and factors the Hessian that is not the Jacobian; its numbers of negative and positive
 /// eigenvalues.
-pub(crate) fn hessian_inertia<P: Problem + ?Sized>(
-    problem: &P,
+pub(crate) fn hessian_inertia(
+    problem: &DynProblem<'_>,
     u: &[f64],
     p: &[f64],
-    hessian: &mut P::Jacobian,
+    hessian: &mut AnyMatrix,
 ) -> Option<(usize, usize)> {
     problem.energy_hessian(u, p, hessian).ok()?;
     let floor = f64::EPSILON * hessian.norm();

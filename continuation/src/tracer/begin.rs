@@ -1,9 +1,9 @@
 //! Where a branch begins: a start that is rounding, and one that is a special point itself.
 
 use super::{TraceError, Tracer};
+use crate::any_problem::DynProblem;
 use crate::branch::{Detail, Doubt, Event, EventKind};
-use crate::linalg::Matrix;
-use crate::problem::{Problem, Stability};
+use crate::problem::Stability;
 use crate::singular::{Begun, branch_point_at, fold_form, locate_hopf, max_abs};
 use crate::step::{Constraint, Core, Precision, State};
 
@@ -25,7 +25,7 @@ const AT_START: f64 = 1e-10;
 
 /// Sets `u` to zero where it is what Newton's method left of zero and zero solves the equations as
 /// well: scales must not come from a state that is rounding.
-pub(super) fn settle<P: Problem + ?Sized>(problem: &P, guess: &[f64], u: &mut [f64], p: &[f64]) {
+pub(super) fn settle(problem: &DynProblem<'_>, guess: &[f64], u: &mut [f64], p: &[f64]) {
     if max_abs(u) > LEFT_OVER * max_abs(guess) {
         return;
     }
@@ -42,8 +42,8 @@ pub(super) fn settle<P: Problem + ?Sized>(problem: &P, guess: &[f64], u: &mut [f
 ///
 /// # Errors
 /// [`TraceError::SingularEverywhere`] from `everywhere`; where the start has no tangent.
-pub(super) fn at<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
+pub(super) fn at(
+    core: &mut Core<'_>,
     start: &mut State,
     increasing: bool,
     range: f64,
@@ -70,7 +70,7 @@ pub(super) fn at<P: Problem + ?Sized>(
     Ok(None)
 }
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// Reports the special point that the start is, if it is one; `crossing` is known where it is a
     /// branch point.
     pub(super) fn begin_at_special_point(&mut self, crossing: Option<Begun>) {

@@ -2,10 +2,10 @@
 
 use super::Tracer;
 use super::input::{Progress, TraceError, increases};
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Detail, Event, Stop, StopReason};
 use crate::events::Watch;
-use crate::linalg::Matrix;
-use crate::problem::{DynProblem, Problem};
+use crate::problem::Problem;
 use crate::settings::Settings;
 use std::ops::ControlFlow;
 
@@ -51,8 +51,8 @@ pub fn both_ways<P: Problem>(
 }
 
 /// [`both_ways`] of a problem of unknown type.
-pub(crate) fn both<'a, J: Matrix>(
-    problem: &'a DynProblem<'a, J>,
+pub(crate) fn both<'a>(
+    problem: &'a DynProblem<'a>,
     parameter: &str,
     (u, p): (&[f64], &[f64]),
     settings: Settings,

@@ -1,7 +1,6 @@
 //! Steps that would leave the domain of the parameter.
 
 use super::Tracer;
-use crate::linalg::Matrix;
 use crate::step::{Constraint, Corrected, Precision, Refusal};
 
 /// Distance from a bound, in scales of the parameter, that is rounding.
@@ -10,7 +9,7 @@ const ON_BOUND: f64 = 1e-14;
 /// Halvings that find where a prediction meets a bound.
 const HALVINGS: usize = 60;
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// Whether the whole step lies on a bound of the domain, to rounding: the branch tends to it.
     pub(super) fn runs_along_bound(&self) -> bool {
         let Some((lo, hi)) = self.settings.domain else { return false };

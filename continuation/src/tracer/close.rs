@@ -3,8 +3,6 @@
 
 use super::Tracer;
 use crate::events::{Located, bend, interpolate};
-use crate::linalg::Matrix;
-use crate::problem::Problem;
 use crate::step::{Constraint, Core, Precision, Refusal, State};
 
 /// Part of the step within which a branch point that Newton's method does not meet is bracketed.
@@ -13,7 +11,7 @@ const NARROW: f64 = 1e-2;
 /// changed the orientation: its corner blurs short steps; longer ones see the crossing branches only.
 const LENGTHS: [f64; 4] = [1.0, 8.0, 64.0, 512.0];
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// Where steps fail at every length though a longer one had reached a state of the other
     /// orientation, the branch runs into a branch point, near which short steps see rounding only.
     /// The shortest step that did cross is taken if there is a branch point in it. If there is none,
@@ -69,8 +67,8 @@ impl<J: Matrix> Tracer<'_, J> {
 
 /// Whether the branch from `a` to `b`, a scaled length `h` apart, passes through the place where its
 /// orientation changes: states on both sides of it are as near to each other as the place is known.
-pub(super) fn passes_through<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
+pub(super) fn passes_through(
+    core: &mut Core<'_>,
     a: &State,
     b: &State,
     h: f64,

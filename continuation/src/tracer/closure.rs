@@ -3,15 +3,13 @@
 use super::Tracer;
 use crate::branch::StopReason;
 use crate::events::basis;
-use crate::linalg::Matrix;
-use crate::problem::Problem;
 use crate::step::{Core, State};
 
 /// How far from the start, relative to the step, a branch may pass and still be the same: the
 /// error of the Hermite cubic by which the step is interpolated.
 const SAME: f64 = 0.02;
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// Whether the step of scaled length `h` closes the branch: over its start, in which
     /// direction, or over the end of its other half; and at which part of the step.
     pub(super) fn closes(&mut self, h: f64) -> Option<(StopReason, f64)> {
@@ -32,8 +30,8 @@ impl<J: Matrix> Tracer<'_, J> {
 }
 
 /// Whether the step of scaled length `h` from `current` to `trial` passes over `at`, and where.
-fn passes<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
+fn passes(
+    core: &mut Core<'_>,
     current: &State,
     trial: &State,
     at: &State,

@@ -2,7 +2,6 @@
 
 use super::Tracer;
 use crate::branch::Doubt;
-use crate::linalg::Matrix;
 
 /// Accepted steps after which the derivatives are looked at.
 const EARLY: usize = 3;
@@ -10,7 +9,7 @@ const EARLY: usize = 3;
 pub(super) const LABORIOUS: usize = 5;
 pub(super) const MANY: usize = 6;
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// Looks once at the derivatives early on, and once more where corrections are laborious.
     pub(super) fn examine_derivatives(&mut self) {
         let early = self.core.statistics.accepted == EARLY;

@@ -1,8 +1,9 @@
 //! What a trace is told, and why it could not begin.
 
+use crate::any_problem::DynProblem;
 use crate::events::{Beside, Detector, Watch};
 use crate::newton::NewtonError;
-use crate::problem::{ParamId, Parameter, Problem, Stability};
+use crate::problem::{ParamId, Parameter, Stability};
 use crate::settings::{Settings, SettingsError};
 use crate::singular::{Extended, Probe, deficient_everywhere};
 use crate::sound::ProblemError;
@@ -116,8 +117,8 @@ pub(super) fn begins_at_target(settings: &Settings, start: f64) -> bool {
 
 /// The error of a start beside which the Jacobian is singular at every solution; `None` if it is not,
 /// or if nothing can be said.
-pub(super) fn singular_everywhere<P: Problem + ?Sized>(
-    problem: &P,
+pub(super) fn singular_everywhere(
+    problem: &DynProblem<'_>,
     which: ParamId,
     u: &[f64],
     p: &[f64],
@@ -139,8 +140,8 @@ pub(super) fn singular_everywhere<P: Problem + ?Sized>(
 }
 
 /// Why there is no first point: what is wrong with the problem near the start, or Newton's own error.
-pub(super) fn no_start<P: Problem + ?Sized>(
-    problem: &P,
+pub(super) fn no_start(
+    problem: &DynProblem<'_>,
     which: ParamId,
     (u, p): (&[f64], &[f64]),
     domain: Option<(f64, f64)>,
@@ -174,13 +175,13 @@ pub(super) fn check(what: &'static str, values: &[f64], expected: usize) -> Resu
 }
 
 /// The error that names an observable that is not there.
-fn unknown_observable<P: Problem + ?Sized>(problem: &P, name: String) -> TraceError {
+fn unknown_observable(problem: &DynProblem<'_>, name: String) -> TraceError {
     TraceError::UnknownObservable { name, known: problem.observables().join(", ") }
 }
 
 /// What finds the special points of a step.
-pub(super) fn detector<P: Problem + ?Sized>(
-    problem: &P,
+pub(super) fn detector(
+    problem: &DynProblem<'_>,
     watches: &[Watch],
     settings: &Settings,
 ) -> Result<Detector, TraceError> {

@@ -40,11 +40,11 @@ pub use input::{Progress, TraceError};
 pub(crate) use resume::Baton;
 pub(crate) use snapshot::Snapshot;
 
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Doubt, Event, Point, Statistics, Stop, StopReason};
 use crate::events::{Detector, Hidden, Plateau, Stretch, Watch};
-use crate::linalg::Matrix;
-use crate::newton::{NewtonSettings, newton};
-use crate::problem::{DynProblem, EvalError, ParamId, Problem};
+use crate::newton::{self, NewtonSettings};
+use crate::problem::{EvalError, ParamId, Problem};
 use crate::settings::{Settings, SettingsError};
 use crate::sound::{check_sizes, examine};
 use crate::step::{
@@ -68,8 +68,8 @@ const TOUCHES: &str = "an eigenvalue comes so close to the imaginary axis that i
 ///
 /// Work is done when the next point is asked for. After the last point [`Tracer::stopped`] says why
 /// the trace ended.
-pub struct Tracer<'a, J: Matrix> {
-    core: Core<'a, DynProblem<'a, J>>,
+pub struct Tracer<'a> {
+    core: Core<'a>,
     settings: Settings,
     detector: Detector,
     size: StepSize,
@@ -113,16 +113,16 @@ pub struct Tracer<'a, J: Matrix> {
     stop: Option<Stop>,
 }
 
-impl<'a, J: Matrix> Tracer<'a, J> {
+impl<'a> Tracer<'a> {
     /// Prepares a trace of the branch through the solution near `u` in the named parameter.
     ///
     /// `u` has length [`Problem::dim`], `p` holds the values of all parameters, of which all but the
-    /// named one stay. Newton's method ([`newton()`]) leads from `u` to the first point.
+    /// named one stay. Newton's method ([`newton()`](crate::newton())) leads from `u` to the first point.
     ///
     /// # Errors
     /// When the input is unusable, there is no solution near `u`, or the branch has no tangent there
     /// (at a fold or branch point).
-    pub fn new<P: Problem<Jacobian = J>>(
+    pub fn new<P: Problem>(
         problem: &'a P,
         parameter: &str,
         u: &[f64],
@@ -134,7 +134,7 @@ impl<'a, J: Matrix> Tracer<'a, J> {
 
     /// [`Tracer::new`] of a problem of unknown type.
     pub(crate) fn of(
-        problem: &'a DynProblem<'a, J>,
+        problem: &'a DynProblem<'a>,
         parameter: &str,
         u: &[f64],
         p: &[f64],
@@ -169,10 +169,11 @@ impl<'a, J: Matrix> Tracer<'a, J> {
         }
         let everywhere =
             |u: &[f64]| singular_everywhere(problem, ParamId(which), u, p, range, settings.domain);
-        let report =
-            newton(problem, &mut start.u, p, &NewtonSettings::default()).map_err(|error| {
+        let report = newton::solve(problem, &mut start.u, p, &NewtonSettings::default()).map_err(
+            |error| {
                 no_start(problem, ParamId(which), (u, p), settings.domain, everywhere(u), error)
-            })?;
+            },
+        )?;
         begin::settle(problem, u, &mut start.u, p);
 
         let increasing = increases(&settings, start.p);
@@ -187,7 +188,7 @@ impl<'a, J: Matrix> Tracer<'a, J> {
 
     /// The tracer that stands at `start`.
     fn set_up(
-        mut core: Core<'a, DynProblem<'a, J>>,
+        mut core: Core<'a>,
         start: State,
         p: &[f64],
         settings: Settings,
@@ -576,7 +577,7 @@ impl<'a, J: Matrix> Tracer<'a, J> {
     }
 }
 
-impl<J: Matrix> Iterator for Tracer<'_, J> {
+impl Iterator for Tracer<'_> {
     type Item = Point;
 
     fn next(&mut self) -> Option<Point> {

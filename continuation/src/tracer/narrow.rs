@@ -8,14 +8,13 @@ use super::Tracer;
 use super::special::Special;
 use crate::branch::Detail;
 use crate::events::{Candidate, Located, bend, interpolate};
-use crate::linalg::Matrix;
 use crate::singular::locate_hopf;
 use crate::step::{Constraint, Precision};
 
 /// Bisections of the step.
 const BISECTIONS: usize = 48;
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// The Hopf point in the step of scaled length `h`, at whose ends the count is certain and differs
     /// by two; `None` if there is none.
     pub(super) fn narrow_hopf(&mut self, h: f64) -> Option<Special> {

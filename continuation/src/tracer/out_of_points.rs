@@ -2,12 +2,11 @@
 
 use super::Tracer;
 use crate::branch::EventKind;
-use crate::linalg::Matrix;
 
 /// Folds on the second half of the points from which on they are a cascade.
 const CASCADE: usize = 6;
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// The limit, and whether the branch turned back and forth on the way.
     pub(super) fn out_of_points(&self) -> String {
         let limit = self.settings.max_points;

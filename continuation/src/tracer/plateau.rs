@@ -3,13 +3,12 @@
 
 use super::Tracer;
 use crate::events::Plateau;
-use crate::linalg::Matrix;
 
 /// Ratio of the lengths that are tried, and their number: the branch is straight there.
 const LONGER: f64 = 1.3;
 const TRIES: i32 = 15;
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// Tries longer steps than the one of length `h`, which ends on the plateau. Where none reaches its
     /// other side the next step may end on it.
     pub(super) fn cross_plateau(&mut self, h: f64) -> bool {

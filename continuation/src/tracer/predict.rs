@@ -1,9 +1,8 @@
 //! Where a step begins: ahead of the last states.
 
 use super::Tracer;
-use crate::linalg::Matrix;
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// Quadratic extrapolation of the branch; along the tangent at first.
     pub(super) fn predict(&mut self, h: f64) {
         self.trial.p = self.predicted(h);

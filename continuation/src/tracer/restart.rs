@@ -3,12 +3,11 @@
 use super::input::check;
 use super::{TraceError, Tracer};
 use crate::branch::{Branch, Event, EventKind};
-use crate::linalg::Matrix;
 use crate::problem::Problem;
 use crate::settings::Settings;
 use std::ops::ControlFlow;
 
-impl<'a, J: Matrix> Tracer<'a, J> {
+impl<'a> Tracer<'a> {
     /// Prepares a trace that goes on along a branch from its point number `index`, such as the last
     /// one, or that of an event; for another range, with other steps, or from a file. It goes the
     /// branch's way unless the settings say whether the parameter is to increase. At a special point
@@ -32,7 +31,7 @@ impl<'a, J: Matrix> Tracer<'a, J> {
     ///
     /// # Errors
     /// As [`Tracer::new`], and when the branch is not one of this problem or has no such point.
-    pub fn from_point<P: Problem<Jacobian = J>>(
+    pub fn from_point<P: Problem>(
         problem: &'a P,
         branch: &Branch,
         index: usize,

@@ -1,8 +1,8 @@
 //! A trace that goes on with another discretisation of the same branch.
 
 use super::Tracer;
-use crate::linalg::Matrix;
-use crate::problem::{DynProblem, ParamId};
+use crate::any_problem::DynProblem;
+use crate::problem::ParamId;
 use crate::settings::Settings;
 use crate::step::{Constraint, Core, Precision, Refusal, State, StepSize, Weights};
 
@@ -24,7 +24,7 @@ impl Baton {
     }
 }
 
-impl<'a, J: Matrix> Tracer<'a, J> {
+impl<'a> Tracer<'a> {
     /// Where the trace stands, and by which lengths it measures.
     pub(crate) fn baton(&self, range: f64) -> Baton {
         Baton { at: self.current.clone(), weights: self.core.weights, size: self.size, range }
@@ -34,7 +34,7 @@ impl<'a, J: Matrix> Tracer<'a, J> {
     /// its tangent, so that the parameter need not be what determines it. Refused where the correction is
     /// longer than `most`, in the scaled metric.
     pub(crate) fn resume(
-        problem: &'a DynProblem<'a, J>,
+        problem: &'a DynProblem<'a>,
         which: ParamId,
         p: &[f64],
         baton: &Baton,

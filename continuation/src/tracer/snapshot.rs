@@ -3,7 +3,6 @@
 use super::Tracer;
 use super::switching::Departure;
 use crate::branch::{Doubt, Event, Point, Statistics, Stop};
-use crate::linalg::Matrix;
 use crate::step::{State, StepSize, Weights};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
@@ -43,7 +42,7 @@ pub(crate) struct Snapshot {
     stop: Option<Stop>,
 }
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// The state of the trace.
     pub(crate) fn snapshot(&self) -> Snapshot {
         Snapshot {

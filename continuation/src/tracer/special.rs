@@ -6,8 +6,6 @@ use crate::branch::{Detail, Eigenvector, Event, EventKind, FoldForm, StopReason}
 use crate::events::{
     Candidate, Located, Role, bend, flat_fold, interpolate, locate, locate_watched,
 };
-use crate::linalg::Matrix;
-use crate::problem::Problem;
 use crate::singular::{
     Crossed, SAME_PARAMETER, SEEDS, fold_form, locate_branch_point_near, locate_branch_points,
     locate_hopf,
@@ -44,7 +42,7 @@ pub(super) struct Special {
 const FLAT: f64 = 1e-3;
 
 /// The normal form of the fold at `x`, and a bound of the error of dp/ds, both 0 where there is none.
-fn form_at_fold<P: Problem + ?Sized>(core: &mut Core<'_, P>, x: &State) -> (Option<FoldForm>, f64) {
+fn form_at_fold(core: &mut Core<'_>, x: &State) -> (Option<FoldForm>, f64) {
     let left = core.left_at_fold();
     let mut probe = core.probe();
     let form = fold_form(&mut probe, x, &left);
@@ -52,7 +50,7 @@ fn form_at_fold<P: Problem + ?Sized>(core: &mut Core<'_, P>, x: &State) -> (Opti
     form.map_or((None, 0.0), |(form, missed)| (Some(form), missed))
 }
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// Ends the step of length `h` where the trace ends, if it passes its target or a bound of its
     /// domain: what lies beyond is not judged. The step's length then.
     pub(super) fn end_at_bound(&mut self, h: f64) -> f64 {
@@ -177,7 +175,7 @@ impl<J: Matrix> Tracer<'_, J> {
     }
 
     /// The values of the parameter at which the trace ends.
-    fn ends(&self) -> impl Iterator<Item = (f64, Role)> + use<J> {
+    fn ends(&self) -> impl Iterator<Item = (f64, Role)> + use<> {
         let target = self.settings.target.map(|value| (value, Role::Target));
         let (lo, hi) = self.settings.domain.unzip();
         let bounds = [lo, hi].into_iter().flatten().map(|value| (value, Role::Bound));
@@ -539,13 +537,7 @@ enum Divided {
 
 /// Bisects the step from `a` to `b` by the count, which is cheaper than Newton's method for several modes
 /// that are critical at different places.
-fn divide<P: Problem + ?Sized>(
-    core: &mut Core<'_, P>,
-    a: &State,
-    b: &State,
-    h: f64,
-    x: &mut State,
-) -> Divided {
+fn divide(core: &mut Core<'_>, a: &State, b: &State, h: f64, x: &mut State) -> Divided {
     let (Some(before), Some(after)) = (a.count, b.count) else { return Divided::Unknown };
     let bend = bend(core, a, b);
     let counted = core.counted();

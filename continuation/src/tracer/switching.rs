@@ -7,9 +7,9 @@
 
 use super::Tracer;
 use super::input::{TraceError, check, range};
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Direction, Event, StopReason};
-use crate::linalg::Matrix;
-use crate::problem::{DynProblem, EvalError, ParamId, Problem};
+use crate::problem::{EvalError, ParamId, Problem};
 use crate::settings::Settings;
 use crate::singular::Extended;
 use crate::step::{Constraint, Core, Precision, Refusal, State, Weights, dot, judge};
@@ -37,7 +37,7 @@ const FAR_TURN: f64 = 0.8;
 /// Longest and shortest first step, as parts of the one to a state that tells branches apart.
 const APART: [f64; 2] = [1.0, 0.5];
 
-impl<'a, J: Matrix> Tracer<'a, J> {
+impl<'a> Tracer<'a> {
     /// Prepares a trace of a branch that leaves `branch` at one of its branch points, along
     /// `direction`, one of [`crate::Crossing::leaving`], or against it. The first point is the
     /// branch point itself. The parameters other than the continued one have their values of
@@ -68,7 +68,7 @@ impl<'a, J: Matrix> Tracer<'a, J> {
     ///
     /// # Errors
     /// When the settings are out of range, or the event is not a branch point of this problem.
-    pub fn leaving<P: Problem<Jacobian = J>>(
+    pub fn leaving<P: Problem>(
         problem: &'a P,
         branch: &Branch,
         event: &Event,
@@ -81,7 +81,7 @@ impl<'a, J: Matrix> Tracer<'a, J> {
 
     /// [`Tracer::leaving`] of a problem of unknown type.
     pub(crate) fn off(
-        problem: &'a DynProblem<'a, J>,
+        problem: &'a DynProblem<'a>,
         branch: &Branch,
         event: &Event,
         direction: &Direction,

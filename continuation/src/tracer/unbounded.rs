@@ -5,8 +5,6 @@
 
 use super::Tracer;
 use crate::branch::StopReason;
-use crate::linalg::Matrix;
-use crate::problem::Problem;
 use crate::step::{Core, State};
 
 /// Growth of the unknowns beyond which a branch goes to infinity. At `u = c / (p − p₀)` a rounding error of
@@ -17,12 +15,12 @@ const UNBOUNDED: f64 = 1e6;
 const COMES_TO_REST: f64 = 1e-3;
 
 /// Size of the unknowns: what they have at the start or are expected to reach, at least 1.
-pub(super) fn extent<P: Problem + ?Sized>(core: &mut Core<'_, P>, start: &State) -> f64 {
+pub(super) fn extent(core: &mut Core<'_>, start: &State) -> f64 {
     let origin = vec![0.0; start.u.len()];
     core.excursion(&start.u, &origin).max(core.weights.unknowns).max(1.0)
 }
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// Ends the trace where the unknowns have grown beyond all bounds.
     pub(super) fn check_bounded(&mut self) {
         let (x, w) = (&self.current, self.core.weights);

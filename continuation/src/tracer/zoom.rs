@@ -6,7 +6,6 @@
 //! step shows, and with them the limits of the step; the scales grow with the branch.
 
 use super::Tracer;
-use crate::linalg::Matrix;
 use crate::step::{Refusal, Weights};
 
 /// Part of the first step at which the scales shrink so that it may become shorter, and by which.
@@ -20,7 +19,7 @@ const LEAST: f64 = 1e-12;
 /// Part of its scale over which a branch has gone when that grows, to twice as much.
 const GROWN: f64 = 0.5;
 
-impl<J: Matrix> Tracer<'_, J> {
+impl Tracer<'_> {
     /// Shrinks the scales if the first step, refused at the scaled length `h`, shows that they are far
     /// too large; the same length by the new ones.
     pub(super) fn zoom_in(&mut self, refusal: &Refusal, h: f64) -> Option<f64> {

@@ -12,7 +12,6 @@
 use super::super::State;
 use super::{Constraint, Core, Corrected, STANDS_STILL};
 use crate::linalg::Matrix;
-use crate::problem::Problem;
 use crate::singular::arbitrary;
 
 /// A correction of Newton's method, relative to the state, after which its factors are good enough.
@@ -34,7 +33,7 @@ const SAME_SIGN: f64 = 0.1;
 /// An eigenvalue smaller than this part of its change in the step may have the other sign.
 const CLOSE: f64 = 0.1;
 
-impl<P: Problem + ?Sized> Core<'_, P> {
+impl Core<'_> {
     /// Goes on from a correction of Newton's method of length `report.last` without new factors; true
     /// where that led to a solution and its tangent. Otherwise the state keeps the corrections made.
     pub(super) fn follow_up(

@@ -3,7 +3,6 @@
 use super::super::{State, Weights, dot};
 use super::Core;
 use crate::linalg::{Matrix, max_abs};
-use crate::problem::Problem;
 use crate::singular::arbitrary;
 
 /// A row smaller than this part of the largest counts as that: it may be zero.
@@ -12,7 +11,7 @@ const ROW: f64 = 1e-4;
 /// closer look.
 const NEARLY_SINGULAR: f64 = 1e8;
 
-impl<P: Problem + ?Sized> Core<'_, P> {
+impl Core<'_> {
     /// Whether the matrix bordered by the tangent of the latest start is singular to rounding, or so
     /// nearly that it may be.
     ///

@@ -9,7 +9,7 @@ use continuation::{
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-fn follow<P: Problem>(curve: &BranchPointCurve<'_, P>, domain: (f64, f64)) -> Curve {
+fn follow(curve: &BranchPointCurve<'_>, domain: (f64, f64)) -> Curve {
     let settings = Settings { domain: Some(domain), ..Settings::default() };
     curve.trace(&settings, &[], &mut |_| ControlFlow::Continue(())).unwrap()
 }

@@ -2,14 +2,10 @@
 
 use super::{account, co_branch, co_oxidation, follow, trace};
 use continuation::codim2::{Curve, FoldCurve, HopfCurve};
-use continuation::{DenseProblem, EventKind, Problem, Settings, StopReason, Tracer};
+use continuation::{DenseProblem, EventKind, Settings, StopReason, Tracer};
 use std::ops::ControlFlow;
 
-fn hopf_curve<P: Problem>(
-    curve: &HopfCurve<'_, P>,
-    domain: (f64, f64),
-    max_step: Option<f64>,
-) -> Curve {
+fn hopf_curve(curve: &HopfCurve<'_>, domain: (f64, f64), max_step: Option<f64>) -> Curve {
     let settings = Settings { domain: Some(domain), max_step, ..Settings::default() };
     curve.trace(&settings, &[], &mut |_| ControlFlow::Continue(())).unwrap()
 }

@@ -24,8 +24,8 @@ fn trace<P: Problem>(problem: &P, name: &str, u: &[f64], p: &[f64], target: f64)
     tracer.run(&mut |_| ControlFlow::Continue(()))
 }
 
-fn follow<P: Problem>(
-    curve: &FoldCurve<'_, P>,
+fn follow(
+    curve: &FoldCurve<'_>,
     (low, high): (f64, f64),
     max_step: Option<f64>,
     watches: &[Watch],
