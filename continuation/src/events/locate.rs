@@ -87,7 +87,12 @@ pub(crate) fn locate(
         interpolate(a, b, h, bend, best, x);
         correction = core.correct(Constraint::Plane(a, best), x, Precision::Event)?.last;
     }
-    Ok(Located { at: best, error: error_at(&search, correction) })
+    let mut error = error_at(&search, correction);
+    if matches!(candidate, Candidate::BranchPoint { .. } | Candidate::Stability { .. }) {
+        // signs alone do not say at which end
+        error = error.max(search.width());
+    }
+    Ok(Located { at: best, error })
 }
 
 /// The estimated error of the best end of a bracket, whose state the last correction moved by

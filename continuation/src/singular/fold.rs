@@ -15,7 +15,7 @@ pub(crate) fn fold_form(
 ) -> Result<(FoldForm, f64), EvalError> {
     let z = Extended { u: x.u.clone(), p: x.p };
     let t = Extended { u: x.tu.clone(), p: x.tp };
-    let bent = settle(|part| {
+    let bent = settle(0.0, |part| {
         let second = probe.second(&z, &t, part, &[&t])?;
         Ok(Some(-dot(left, &second[0])))
     })?;

@@ -10,7 +10,7 @@
 
 use super::kernel::Singular;
 use super::plateau::settle;
-use super::probe::{Extended, FIRST, Probe};
+use super::probe::{Extended, FIRST, Probe, SECOND};
 use crate::branch::{Criticality, Crossing, Direction, Shape};
 use crate::linalg::Matrix;
 use crate::problem::{EvalError, Stability};
@@ -159,7 +159,9 @@ fn pitchfork(
 ) -> Result<Option<Bent>, EvalError> {
     let w = at.left[0].clone();
     let mut exchange = f64::NAN;
-    let bent = settle(|part| {
+    // weights of a second difference of 64 / 12 in sum, and the rounding that moves the point
+    let rounding = at.resolution * probe.weights.parameter * 64.0 / (36.0 * SECOND * SECOND);
+    let bent = settle(rounding, |part| {
         let mut bending = probe.bending(&at.z, fork, part, &w)?;
         bending.second.iter_mut().for_each(|y| *y = -*y);
         let (h, _) = at.frame.solve(probe, &bending.second);

@@ -253,7 +253,8 @@ fn normal_form(
     let reference = super::max_abs(&by_branch[0]).max(super::max_abs(&by_branch[1]));
     let amplitude = if reference > 0.0 { probe.amplitude(z, &a, reference) } else { None };
     let amplitude = amplitude.unwrap_or(1.0);
-    let found = settle(|part| lyapunov(probe, z, omega, critical, &p, (&a, &b), part * amplitude))?;
+    let found =
+        settle(0.0, |part| lyapunov(probe, z, omega, critical, &p, (&a, &b), part * amplitude))?;
     let Some(found) = found else { return Ok(None) };
     let criticality = match found.value {
         _ if !found.is_signed() => None,

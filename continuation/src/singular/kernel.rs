@@ -252,9 +252,15 @@ pub(crate) fn find(
     }
     let mut amplitude = Vec::new();
     let mut last = f64::INFINITY;
-    let mut known = None;
+    // of larger kernels the vectors may turn within their span
+    let steering = if k == 1 { Known::Roughly } else { Known::Nothing };
+    let mut known = steering.clone();
+    let mut moved: Option<Vec<f64>> = None;
     for iteration in 0..MAX_ITERATIONS {
-        let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, known.take())?;
+        let mut local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, known)?;
+        if let Some(y) = &moved {
+            local.learn(y, &amplitude);
+        }
         let residual: Vec<f64> = probe.residual.iter().map(|r| -r).collect();
         let (mut step, beta) = frame.solve(probe, &residual);
         let y = least_squares(&local.matrix(), &local.defect()).ok_or(Failure::NoConvergence)?;
@@ -284,9 +290,9 @@ pub(crate) fn find(
                 return Err(Failure::NoConvergence);
             }
         }
-        // of larger kernels the vectors may turn within their span
-        let settled = k == 1 && correction <= SETTLED && fast;
-        known = settled.then_some(local.form);
+        let settled = k == 1 && (fast && correction <= SETTLED || correction <= ROUNDING);
+        known = if settled { Known::Form(local.form) } else { steering.clone() };
+        moved = (settled && correction > ROUNDING).then_some(y);
         last = correction;
         // a state without a value is met by a shorter correction
         let mut part = 1.0;
@@ -296,6 +302,7 @@ pub(crate) fn find(
                 return Err(error.into());
             }
             z.add(-part, &step);
+            moved = None;
         }
         frame.factor(probe);
         frame.renew(probe).ok_or(Failure::NoConvergence)?;
@@ -320,7 +327,7 @@ fn finish(
     if frame.k > 1 {
         amplitude.clear();
     }
-    let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, None)?;
+    let local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, Known::Nothing)?;
     // lengths, in natural amplitudes, over which the quadratic form makes the defect and the
     // unfolding
     let x = &amplitude;
@@ -359,15 +366,25 @@ struct Local {
 /// `form[j][i][l] = w_jᵀ F_zz[v_i, v_l]`.
 type Form = Vec<Vec<Vec<f64>>>;
 
+/// What is known of the quadratic form.
+#[derive(Debug, Clone)]
+enum Known {
+    /// Nothing: differences from four places in each direction.
+    Nothing,
+    /// Nothing, and one place beside the point says enough: the form steers the iteration only.
+    Roughly,
+    /// That of a point near by.
+    Form(Form),
+}
+
 impl Local {
-    /// `known` is the form of a point near by, whose differences are saved.
     fn of(
         probe: &mut Probe<'_>,
         frame: &mut Frame,
         z: &Extended,
         amplitude: &mut Vec<f64>,
         tangent: &Extended,
-        known: Option<Form>,
+        known: Known,
     ) -> Result<Self, Failure> {
         let k = frame.k;
         let (mut right, mut g) = (Vec::new(), vec![Vec::new(); k]);
@@ -383,8 +400,9 @@ impl Local {
             *amplitude = amplitudes(probe, z, &right, tangent)?;
         }
         let form = match known {
-            Some(form) => form,
-            None => quadratic_form(probe, z, (&right, &left), amplitude)?,
+            Known::Form(form) => form,
+            Known::Roughly => quadratic_form(probe, z, (&right, &left), amplitude, true)?,
+            Known::Nothing => quadratic_form(probe, z, (&right, &left), amplitude, false)?,
         };
         let norm = |x: &[f64]| crate::step::dot(x, x).sqrt();
         let widest = right.iter().zip(&*amplitude).map(|(v, x)| norm(&v.u) * x);
@@ -392,6 +410,18 @@ impl Local {
         let longest = left.iter().map(|w| norm(w)).fold(0.0, f64::max);
         let noise = ENTRIES * probe.jacobian.norm() * longest * widest;
         Ok(Local { right, left, g, form, noise })
+    }
+
+    /// Corrects the form of one vector beside the branch by what is left of the defect after a step `y`
+    /// that was to remove it (Broyden, in natural amplitudes).
+    fn learn(&mut self, y: &[f64], amplitude: &[f64]) {
+        let along: Vec<f64> = y.iter().zip(amplitude).map(|(y, x)| y / (x * x)).collect();
+        let square = crate::step::dot(y, &along);
+        for (row, g) in self.form[0].iter_mut().zip(&self.g[0]) {
+            for (f, along) in row.iter_mut().zip(&along) {
+                *f -= g * along / square;
+            }
+        }
     }
 
     /// By how much `noise` moves the point, in natural amplitudes. The place of a simple point
@@ -449,12 +479,16 @@ fn quadratic_form(
     z: &Extended,
     (right, left): (&[Extended], &[Vec<f64>]),
     amplitude: &[f64],
+    roughly: bool,
 ) -> Result<Form, EvalError> {
     let k = left.len();
     let mut form = vec![vec![vec![0.0; k + 1]; k + 1]; k];
     let all: Vec<&Extended> = right.iter().collect();
     for (l, v) in right.iter().enumerate() {
-        let second = probe.second(z, v, amplitude[l], &all)?;
+        let second = match roughly {
+            true => probe.second_from_one_side(z, v, amplitude[l], &all)?,
+            false => probe.second(z, v, amplitude[l], &all)?,
+        };
         for (j, w) in left.iter().enumerate() {
             for (i, y) in second.iter().enumerate() {
                 form[j][i][l] = crate::step::dot(w, y);
@@ -484,10 +518,10 @@ fn amplitudes(
 ) -> Result<Vec<f64>, EvalError> {
     let mut amplitude = vec![1.0];
     let others: Vec<&Extended> = right[1..].iter().collect();
-    let along = probe.second_roughly(z, tangent, 1.0, &others)?;
+    let along = probe.second_from_one_side(z, tangent, 1.0, &others)?;
     for (v, by_branch) in right[1..].iter().zip(&along) {
         let reference = super::max_abs(by_branch);
-        let found = if reference > 0.0 { probe.amplitude(z, v, reference) } else { None };
+        let found = if reference > 0.0 { probe.amplitude_here(z, v, reference) } else { None };
         amplitude.push(found.unwrap_or(1.0));
     }
     // known to a factor of some: vectors that a symmetry turns into each other have one amplitude

@@ -10,6 +10,8 @@ use crate::problem::EvalError;
 const FINER: f64 = 0.25;
 /// Most steps: rounding has all of a second derivative at the last one.
 const MOST: i32 = 9;
+/// Fewest values of which the finest range is sought.
+const LEAST: i32 = 3;
 /// The step far below the first two that shows a finer scale, 1000 times shorter.
 const DEEP: i32 = 5;
 /// By how much a step is longer that smooth functions hardly tell from it: what falls like its fourth
@@ -17,6 +19,10 @@ const DEEP: i32 = 5;
 const LONGER: f64 = 1.02;
 /// A change by that part over such a step is rounding.
 const IRREGULAR: f64 = 0.3;
+/// What a step `1 / FINER` times as long has of the rounding of a second derivative.
+const COARSER: f64 = FINER * FINER;
+/// Differences of this many times the expected rounding may be rounding.
+const FEW: f64 = 8.0;
 /// Relative difference of the first two values that is truncation.
 const CONVERGED: f64 = 1e-4;
 /// Relative difference of the first two values that is rounding.
@@ -43,8 +49,10 @@ impl Settled {
 }
 
 /// The limit of `value` for short steps, given as parts of the natural one. `None` where it has no
-/// value.
+/// value. A second derivative may have a `rounding` of this size over the natural step, and more the
+/// shorter the step is; 0 where that is not known.
 pub(super) fn settle(
+    rounding: f64,
     mut value: impl FnMut(f64) -> Result<Option<f64>, EvalError>,
 ) -> Result<Option<Settled>, EvalError> {
     let mut at = |part: f64| value(part).map(|v| v.filter(|v| v.is_finite()));
@@ -52,37 +60,52 @@ pub(super) fn settle(
     for k in [0, 1, DEEP] {
         known[k as usize] = Some(at(FINER.powi(k)));
     }
+    let mut steps = MOST;
     if let [Some(Ok(Some(coarse))), Some(Ok(Some(fine)))] = known[..2] {
         let truncation = (coarse - fine).abs();
         let size = coarse.abs().max(fine.abs());
+        // what rounding has of `fine`
+        let mut left = 0.0;
         let mut smooth = false;
         let mut k = DEEP;
-        while truncation <= CONVERGED * size && k > 1 && !smooth {
+        while k > 1 && !smooth {
             let Ok(Some(v)) = *known[k as usize].get_or_insert_with(|| at(FINER.powi(k))) else {
                 break;
             };
             let off = (v - fine).abs();
             smooth = off <= STANDS * size;
             if !smooth {
-                // where a step hardly longer has quite another value, rounding has it, and all of the
-                // shorter ones; the next longer one has sixteen times less
-                let beside = at(LONGER * FINER.powi(k));
-                if !matches!(beside, Ok(Some(beside)) if (v - beside).abs() > IRREGULAR * off) {
+                // where it may, or a step hardly longer has quite another value, rounding has it, and all
+                // of the shorter ones; the next longer one has sixteen times less
+                let mut irregular = if off <= rounding * COARSER.powi(-k) { off } else { 0.0 };
+                for longer in [LONGER, LONGER * LONGER] {
+                    if irregular <= IRREGULAR * off {
+                        let beside = at(longer * FINER.powi(k));
+                        irregular = beside.ok().flatten().map_or(0.0, |beside| (v - beside).abs());
+                    }
+                }
+                if irregular <= IRREGULAR * off {
                     break;
                 }
-                k -= 1;
+                steps = k.max(LEAST);
+                let mut noise = irregular.max(off);
+                left = noise * COARSER.powi(k - 1);
+                while k > 1 && noise > 0.5 * STANDS * size {
+                    (k, noise) = (k - 1, noise * COARSER);
+                }
             }
         }
-        if smooth {
+        if smooth && truncation <= (CONVERGED * size).max(FEW * left) {
             // a difference this small is rounding, of which the longer step has less
-            let value = if truncation <= ROUNDING * size { coarse } else { fine };
+            let rounded = truncation <= (ROUNDING * size).max(FEW * left);
+            let value = if rounded { coarse } else { fine };
             let error = truncation.max(LAST_DIGITS * size);
             return Ok(Some(Settled { value, error, converged: true }));
         }
     }
     let mut values = Vec::new();
     let mut failure = None;
-    for k in 0..MOST {
+    for k in 0..steps {
         match known[k as usize].unwrap_or_else(|| at(FINER.powi(k))) {
             Ok(Some(v)) => values.push(v),
             Ok(None) => return Ok(None),
@@ -90,7 +113,7 @@ pub(super) fn settle(
             Err(error) => failure = Some(error),
         }
     }
-    if values.len() < 3 {
+    if values.len() < LEAST as usize {
         return failure.map_or(Ok(None), Err);
     }
     let spread = |v: &[f64]| {
@@ -116,7 +139,7 @@ mod tests {
     use super::*;
 
     fn of(f: impl Fn(f64) -> f64) -> Settled {
-        settle(|h| Ok(Some(f(h)))).unwrap().unwrap()
+        settle(0.0, |h| Ok(Some(f(h)))).unwrap().unwrap()
     }
 
     #[test]
@@ -140,7 +163,10 @@ mod tests {
     #[test]
     fn steps_that_leave_the_domain_teach_nothing() {
         let found =
-            settle(|h| if h > 0.01 { Err(EvalError::NotFinite { at: 0 }) } else { Ok(Some(3.0)) });
+            settle(
+                0.0,
+                |h| if h > 0.01 { Err(EvalError::NotFinite { at: 0 }) } else { Ok(Some(3.0)) },
+            );
         assert_eq!(found.unwrap().map(|f| (f.value, f.converged)), Some((3.0, true)));
     }
 }

@@ -44,7 +44,7 @@ impl Extended {
 /// Step of first differences, in natural amplitudes.
 pub(super) const FIRST: f64 = 1e-3;
 /// Step of second differences.
-const SECOND: f64 = 1e-2;
+pub(super) const SECOND: f64 = 1e-2;
 
 /// Derivatives along a direction `v`, with a left vector `w`.
 pub(super) struct Bending {
@@ -229,8 +229,8 @@ impl<'a> Probe<'a> {
         self.stencil(z, v, &terms, xs)
     }
 
-    /// The same from two places, to about 1e-6: enough to steer an iteration.
-    pub(crate) fn second_roughly(
+    /// The same from one place and the matrix that was assembled last, that at `z`: to about 1e-3.
+    pub(crate) fn second_from_one_side(
         &mut self,
         z: &Extended,
         v: &Extended,
@@ -238,7 +238,10 @@ impl<'a> Probe<'a> {
         xs: &[&Extended],
     ) -> Result<Vec<Vec<f64>>, EvalError> {
         let h = FIRST * amplitude;
-        self.stencil(z, v, &[(h, 0.5 / h), (-h, -0.5 / h)], xs)
+        let mut out: Vec<Vec<f64>> = xs.iter().map(|x| self.without_here(x)).collect();
+        self.accumulate(z, v, h, 1.0, xs, &mut out)?;
+        out.iter_mut().flatten().for_each(|y| *y /= h);
+        Ok(out)
     }
 
     /// `F_zzz[v, v, x_i]` for every `x_i`, and `F_zz[v, x_i]` from the same evaluations.
@@ -307,6 +310,16 @@ impl<'a> Probe<'a> {
         Ok(out)
     }
 
+    /// The same with the matrix that was assembled last, that at `z`.
+    fn without_here(&self, v: &Extended) -> Vec<f64> {
+        let mut out = vec![0.0; self.dim()];
+        self.jacobian.mul(&v.u, &mut out);
+        for (o, f) in out.iter_mut().zip(&self.by_parameter) {
+            *o = -(*o + v.p * f);
+        }
+        out
+    }
+
     /// Largest component of `([F_u F_p](z + x v) − [F_u F_p](z)) v`, given `base = −[F_u F_p](z) v`.
     fn change(
         &mut self,
@@ -341,12 +354,33 @@ impl<'a> Probe<'a> {
     /// their unit. `None` if no multiple within twelve decades is found: the problem is linear in
     /// `v` as far as can be seen.
     pub(crate) fn amplitude(&mut self, z: &Extended, v: &Extended, reference: f64) -> Option<f64> {
-        let mut x = 1.0;
         let base = self.without(z, v).ok()?;
+        self.amplitude_over(z, v, reference, &base)
+    }
+
+    /// The same where the matrix that was assembled last is that at `z`.
+    pub(crate) fn amplitude_here(
+        &mut self,
+        z: &Extended,
+        v: &Extended,
+        reference: f64,
+    ) -> Option<f64> {
+        let base = self.without_here(v);
+        self.amplitude_over(z, v, reference, &base)
+    }
+
+    fn amplitude_over(
+        &mut self,
+        z: &Extended,
+        v: &Extended,
+        reference: f64,
+        base: &[f64],
+    ) -> Option<f64> {
+        let mut x = 1.0;
         let mut out = vec![vec![0.0; self.dim()]];
         let (mut too_small, mut too_large) = (0.0_f64, f64::INFINITY);
         for _ in 0..40 {
-            let change = self.change(z, v, x, &base, &mut out).map(|change| change / reference);
+            let change = self.change(z, v, x, base, &mut out).map(|change| change / reference);
             match change {
                 Ok(m) if (0.05..=5.0).contains(&m) => return Some(x),
                 Ok(m) if m < 0.05 => {

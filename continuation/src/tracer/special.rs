@@ -225,9 +225,28 @@ impl Tracer<'_> {
             state: one.state,
         };
         let near;
-        // from elsewhere Newton's method meets a neighbour where modes lie close: what fails from the middle
-        // is bracketed
-        let mut seeds = if kernel == 1 && !final_say { &SEEDS[..1] } else { &SEEDS[..] };
+        // from elsewhere Newton's method meets a neighbour where modes lie close, and leaves the domain where
+        // thin films forbid a long way
+        if kernel == 1 && !final_say {
+            let mut part = NEARER;
+            let found = loop {
+                let near = locate(core, a, b, h, &candidate, part * h, work)
+                    .and_then(|_| locate_branch_point_near(core, (a, b), h, work, final_say));
+                match near {
+                    Err(Refusal::Evaluation(_)) if part > BRACKET => part = BRACKET,
+                    Err(Refusal::Orientation) => {
+                        let seeds = &SEEDS[..1];
+                        let all = locate_branch_points(core, a, b, h, kernel, seeds, final_say)?;
+                        located.extend(all.into_iter().map(special));
+                        return Ok(());
+                    }
+                    near => break near?,
+                }
+            };
+            located.push(special(found));
+            return Ok(());
+        }
+        let mut seeds = &SEEDS[..];
         if kernel > 1 && !final_say {
             match divide(core, a, b, h, work) {
                 Divided::Between(at) => {
@@ -248,17 +267,6 @@ impl Tracer<'_> {
         };
         match found {
             Ok(found) => located.extend(found.into_iter().map(special)),
-            // or left the domain, as it does where thin films forbid a long way
-            Err(refusal) if kernel == 1 && !final_say => {
-                let part = match refusal {
-                    Refusal::Evaluation(_) => BRACKET,
-                    Refusal::BranchesClose { .. } => return Err(refusal),
-                    _ => NEARER,
-                };
-                locate(core, a, b, h, &candidate, part * h, work)?;
-                let found = locate_branch_point_near(core, (a, b), h, work, final_say)?;
-                located.push(special(found));
-            }
             Err(refusal) if !final_say || matches!(refusal, Refusal::BranchesClose { .. }) => {
                 return Err(refusal);
             }
