@@ -11,7 +11,8 @@
 //! ch. 5, the minimally augmented systems). Along the kernel coordinates `y` the state moves by
 //! `V y` and `dG_ji/dy_l = -w_jᵀ F_zz[v_i, v_l]`, so that Newton's method (Gauss-Newton for
 //! `k > 1`, where symmetry makes the equations consistent) needs differences of the Jacobian in
-//! `k + 1` directions and no further factorisation. The residual is solved as `F + B β = 0`: `β`
+//! `k + 1` directions and no further factorisation; from one side for `k = 1`, until Broyden's update
+//! does as well. The residual is solved as `F + B β = 0`: `β`
 //! vanishes at a true branch point, and measures by how much an imperfect one is unfolded.
 
 use super::probe::{Extended, Probe};
@@ -29,8 +30,8 @@ const ROUNDING: f64 = 1e-8;
 /// whose singular point is found in place of the exact one.
 const ENTRIES: f64 = 2.0 * f64::EPSILON;
 
-/// Corrections below this, in natural amplitudes, and this part of the one before, leave the quadratic
-/// form as it is: the iteration then shrinks by about as much each time, without differences.
+/// Corrections below this, in natural amplitudes, and this part of the one before, need no differences
+/// any more: what is left of the defect after each corrects the quadratic form.
 const SETTLED: f64 = 2e-2;
 const FAST: f64 = 0.1;
 
