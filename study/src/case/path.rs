@@ -228,7 +228,6 @@ impl Resolver<'_> {
 mod tests {
     use super::super::source::load_text;
     use super::super::{ContactCase, Override, ProblemCase, ResolvedCase};
-    use super::*;
 
     /// `R0` = 1.5 um, `sqrt(chi k_b)` = sqrt(0.05 · 3e-16) N.
     const CASE: &str = "problem = \"contact\"\n[shell]\nlaw = \"hooke\"\n[physical]\nradius = \"1.5 um\"\n\

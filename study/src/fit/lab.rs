@@ -304,11 +304,11 @@ impl Lab {
 
     /// How a file is laid out, with what is known of the lever; wrong options are told by [`Lab::setup`].
     pub fn layout(&self, wishes: Wishes<'_>) -> Layout {
-        let priors = wishes.prior.iter().filter_map(|text| match parse_prior(text) {
+        let mut priors = wishes.prior.iter().filter_map(|text| match parse_prior(text) {
             Ok(Stated::Key(prior)) if prior.key == Key::SpringConstant => Some(prior),
             _ => None,
         });
-        let prior = priors.last();
+        let prior = priors.next_back();
         let known = prior.map_or(self.base[Key::SpringConstant], |prior| prior.value);
         Layout { spring_constant: Some(known).filter(|k| k.is_finite()), ..self.layout.clone() }
     }
