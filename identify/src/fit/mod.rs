@@ -351,7 +351,8 @@ pub fn refit<'a>(earlier: Fitted<'a>, x: &DVector<f64>) -> Result<Fitted<'a>, Fi
     })
 }
 
-/// What there is when a fit is stopped before its polish has begun: a minimum on the thinned curve.
+/// What there is when a fit is stopped before its polish has begun, or the fine mesh has no value: a minimum on a
+/// coarse one.
 fn kept(full: &Objective<'_>, minimum: Minimum) -> Option<Polished> {
     let (x, evaluations) = (minimum.x, minimum.evaluations);
     let at = full.evaluate_on(&x, minimum.at.branch?);
@@ -407,11 +408,8 @@ fn polish(full: &mut Objective<'_>, x: &DVector<f64>) -> Result<Polished, FitErr
     for last in [false, true] {
         let mut best = match descend(full, &x, None, limits) {
             Some(best) => best,
-            // stopped on the way to the fine mesh
-            None if attended.is_stopped() => {
-                return rough.and_then(|found| kept(full, found)).ok_or(FitError::Stopped);
-            }
-            None => return Err(FitError::NoStart),
+            // stopped on the way to the fine mesh, or too dear there
+            None => return rough.and_then(|found| kept(full, found)).ok_or_else(none),
         };
         evaluations += best.evaluations;
         let residuals = full.residuals(&best.at);
