@@ -265,6 +265,10 @@ pub(crate) struct FitArguments {
     /// Let outliers count less (soft-L1)
     #[arg(long)]
     pub(crate) robust: bool,
+    /// Write report.html too, a page with all pictures, quantities with their intervals and verdicts, jumps and
+    /// warnings
+    #[arg(long, conflicts_with = "plan")]
+    pub(crate) report: bool,
     /// Instead of a fit: what a measurement of this shell would identify, from the Fisher information;
     /// --known gives lever and noise (instrument.noise), the case's path the range
     #[arg(long, value_name = "CASE.toml", conflicts_with = "curves")]

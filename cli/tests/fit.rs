@@ -33,7 +33,7 @@ fn a_curve_becomes_files_and_a_case_that_can_be_traced() {
         let base = ["fit", CURVE, "--known", "lab.toml", "--out", "out", "--profile", "young"];
         arclen(folder.path(), &[&base, more].concat())
     };
-    let output = fit(&["--json"]);
+    let output = fit(&["--json", "--report"]);
     assert_eq!(output.status.code(), Some(0), "{}", words(&output));
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     let young = json["derived"].as_array().unwrap().iter().find(|e| e["key"] == "young").unwrap();
@@ -45,6 +45,13 @@ fn a_curve_becomes_files_and_a_case_that_can_be_traced() {
     }
     for name in ["fit.json", "fit.csv", "fit.svg", "fit.png", "case.toml"] {
         assert!(out.join(name).is_file(), "{name}");
+    }
+    // the page stands alone, with all pictures, every quantity and its verdict
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert_eq!(page.matches("<svg").count(), 2);
+    assert!(!["src=", "href=\"http", "<script"].iter().any(|part| page.contains(part)));
+    for words in ["young", "identified", "95 % interval", "No jump was found", "chi2/dof"] {
+        assert!(page.contains(words), "{words}");
     }
     // each known point of the profile is a dot, and the curve through them is no polygon
     let known = json["profiles"][0]["values"].as_array().unwrap().len();
@@ -111,6 +118,8 @@ fn wrong_inputs_are_named_and_nothing_is_created() {
         (&["--law", "hook"], "--law hook"),
         (&["--law", "hooke"], "physical.radius: missing"),
         (&["--law", "hooke", "--prior", "radius=1.58:0.05"], "the unit is missing"),
+        (&["--law", "hooke", "--prior", "young=2 nm:1 nm"], "unit of length"),
+        (&["--law", "hooke", "--prior", "yung=2 GPa:1 GPa"], "allowed: young, thickness"),
         (&["--law", "hooke", "--free", "yuong"], "--free yuong: unknown key"),
         (&["--law", "hooke", "--prior", "radius=1.58 um:50 nm", "--range", "1"], "--range 1"),
         (&["--law", "hooke", "--profile", "E"], "--profile E"),

@@ -51,7 +51,10 @@ fn stopped(arguments: &[&str], signal: &str, wait: Duration, json: &str) -> Opti
         return None;
     }
     assert_eq!(output.status.code(), Some(3), "{said}");
-    assert!(place.path().join("o/case.toml").is_file() || json == "sweep.json", "{said}");
+    assert!(
+        place.path().join("o/case.toml").is_file() || json == "sweep.json" || json == "fits.json",
+        "{said}"
+    );
     Some(serde_json::from_str(&text).unwrap())
 }
 
@@ -66,6 +69,21 @@ fn a_trace_keeps_its_points() {
         assert_eq!(json["stopped_because"], "interrupted");
         assert!(json["points"].as_u64().unwrap() > 1, "{signal}");
     }
+}
+
+/// Curves that are not fitted yet are listed as stopped, those that are have their folders.
+#[test]
+fn a_batch_of_fits_keeps_what_was_found() {
+    let curve = concat!(env!("CARGO_MANIFEST_DIR"), "/../identify/tests/data/open-1-hard-knee.csv");
+    let known = ["--set", "instrument.spring_constant=1.2 N/m", "--law", "hooke"];
+    let prior = ["--prior", "radius=1.58 um:50 nm", "--jobs", "1"];
+    let run = [&["fit"][..], &[curve; 12], &known, &prior].concat();
+    let json = stopped(&run, "INT", Duration::from_millis(4000), "fits.json").unwrap();
+    let fits = json["fits"].as_array().unwrap();
+    let stopped = fits
+        .iter()
+        .filter(|fit| fit["error"].as_str().is_some_and(|error| error.contains("stopped")));
+    assert!(fits.len() == 12 && stopped.count() >= 1, "{json}");
 }
 
 #[test]

@@ -114,6 +114,11 @@ fn control(path: &str, key: &study::case::keys::Key, value: &toml::Value) -> Opt
         ends: [0.0, 1.0],
     };
     match key.kind {
+        // an end of a path that was given with its unit
+        Kind::Number(_) if value.is_str() => {
+            let value = value.as_str()?.to_owned();
+            Some(Control { unit: String::new(), value, quantity: true, ..base })
+        }
         Kind::Number(range) => {
             let now = number(value)?;
             let pure = key.unit.is_empty();

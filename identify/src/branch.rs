@@ -65,8 +65,22 @@ pub struct Effort {
     pub points: usize,
     /// Error of the force that interpolation between points may have, N.
     pub force_error: f64,
+    /// Most corrections of the state, those of rejected steps included, on a mesh of 100 elements; fewer on a finer
+    /// one, which takes longer for each.
+    pub work: f64,
+    /// Largest angle from point to point; what lies between is refined where the force asks for it.
+    pub max_angle: f64,
 }
 
+impl Effort {
+    /// The usual largest angle.
+    pub const ANGLE: f64 = 0.35;
+    /// That on the way to a fit.
+    pub const WIDE: f64 = 0.6;
+}
+
+/// What a point costs beside its corrections: its sensitivities, in corrections.
+const POINT_WORK: f64 = 2.0;
 /// Rounds of refinement between points: each halves a step.
 const ROUNDS: usize = 6;
 /// Slope of the plate's height, per arclength, below which a step is next to a fold and is not halved at a
@@ -103,6 +117,8 @@ pub struct ShellBranch {
     pub nodes: Vec<Node>,
     /// Whether it went as far as was asked.
     pub complete: bool,
+    /// Whether it ended because it took more work than a branch may: the number of points and corrections.
+    pub too_dear: Option<usize>,
     /// The poorest resolution of its points.
     pub resolution: Resolution,
     /// Jacobians assembled.
@@ -130,6 +146,8 @@ pub struct Span<'a> {
     pub end: f64,
     /// Whether a point with this height and force is far enough.
     pub enough: &'a dyn Fn(f64, f64) -> bool,
+    /// Asked at every point whether to stop.
+    pub stop: &'a dyn Fn() -> bool,
 }
 
 /// Traces the branch and computes the sensitivities to the groups that `wanted` names.
@@ -153,6 +171,7 @@ pub fn trace(
         max_points: effort.points,
         // what is interpolated between points is good to 1e-5 of the force
         max_step: Some(0.05),
+        max_angle: effort.max_angle,
         tolerance: 1e-9,
         event_tolerance: 1e-6,
         ..Settings::default()
@@ -162,18 +181,30 @@ pub fn trace(
     let mut branch = ShellBranch {
         nodes: Vec::new(),
         complete: false,
+        too_dear: None,
         resolution: Resolution { per_film_length: f64::INFINITY, per_wavelength: f64::INFINITY },
         assemblies: 0,
     };
     let mut work = Work::new(&problem);
     let mut states: Vec<State> = Vec::new();
-    for point in tracer.by_ref() {
+    let sites = problem.resolution_sites();
+    let budget = (effort.work * 100.0 / effort.elements as f64).ceil() as usize;
+    let mut spent = 0;
+    while let Some(point) = tracer.next() {
+        if (span.stop)() {
+            return Err(ModelError::Stopped);
+        }
+        spent = tracer.statistics().newton_iterations + (POINT_WORK * states.len() as f64) as usize;
+        if spent > budget {
+            branch.too_dear = Some(budget);
+            break;
+        }
         // at a special point the tangent's own system is singular
         if point.event.is_some() {
             continue;
         }
         let at = problem.parameters_at(point.p);
-        branch.resolution = branch.resolution.least(problem.resolution(&point.u, &at)?);
+        branch.resolution = branch.resolution.least(problem.resolution_at(&sites, &point.u, &at)?);
         let node = around.node(&point.u, &at, (point.s, point.dp_ds), point.unstable, &mut work)?;
         let far_enough = (span.enough)(point.p, node.force) || point.p <= span.end;
         states.push(State { node, u: point.u, tangent: work.tangent.clone() });
@@ -183,7 +214,10 @@ pub fn trace(
         }
     }
     let scale = (p[Key::Chi] * p[Key::Bending]).sqrt();
-    let inserted = around.refine(&mut states, effort.force_error / scale, &mut work)?;
+    // what is left of the budget; a point that is put in takes two corrections
+    let most = (budget.saturating_sub(spent) as f64 / (POINT_WORK + 2.0)) as usize;
+    let tolerance = effort.force_error / scale;
+    let inserted = around.refine(&mut states, tolerance, most, span.stop, &mut work)?;
     branch.assemblies = tracer.statistics().newton_iterations + states.len() + inserted;
     branch.nodes = states.into_iter().map(|state| state.node).collect();
     Ok(branch)
@@ -301,26 +335,33 @@ impl<'a> Around<'a> {
         Ok(node)
     }
 
-    /// Puts points where the force between two of them is not known to `tolerance`; returns their number.
+    /// Puts points, `most` at most, where the force between two of them is not known to `tolerance`; returns their
+    /// number.
     /// The arclength of a new point is that of the interpolant of `z0`, so that this is exact, and what is
     /// refined is the force over it.
     fn refine(
         &self,
         states: &mut Vec<State>,
         tolerance: f64,
+        most: usize,
+        stop: &dyn Fn() -> bool,
         work: &mut Work,
     ) -> Result<usize, ModelError> {
-        let before = states.len();
+        let mut inserted = 0;
         for _ in 0..ROUNDS {
             let errors = interpolation_errors(states);
             let mut refined = Vec::with_capacity(2 * states.len());
             let mut changed = false;
             for (k, state) in std::mem::take(states).into_iter().enumerate() {
                 refined.push(state);
-                if k > 0 && errors[k - 1] > tolerance {
-                    let n = refined.len();
+                let n = refined.len();
+                if k > 0 && errors[k - 1] > tolerance && inserted < most {
+                    if stop() {
+                        return Err(ModelError::Stopped);
+                    }
                     if let Some(between) = self.between(&refined[n - 2], &refined[n - 1], work) {
                         refined.insert(n - 1, between?);
+                        inserted += 1;
                         changed = true;
                     }
                 }
@@ -330,7 +371,7 @@ impl<'a> Around<'a> {
                 break;
             }
         }
-        Ok(states.len() - before)
+        Ok(inserted)
     }
 
     /// The point half-way between two, by Newton's method at the interpolated height; `None` next to a fold,

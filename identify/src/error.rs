@@ -25,6 +25,19 @@ pub enum ModelError {
         /// Farthest approach of the data, m.
         needed: f64,
     },
+    /// The branch takes more work than an evaluation may.
+    #[error(
+        "the branch takes more than {most} points and corrections; it has come to an approach of {reached:.3e} m"
+    )]
+    TooDear {
+        /// The budget.
+        most: usize,
+        /// Farthest approach of the branch, m.
+        reached: f64,
+    },
+    /// The fit was stopped.
+    #[error("stopped")]
+    Stopped,
     /// No part of the branch is stable under this lever.
     #[error("no part of the branch is stable under this lever")]
     NothingStable,
@@ -34,6 +47,9 @@ pub enum ModelError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
+    /// Stopped before there was anything to keep.
+    #[error("stopped before a first shell was found")]
+    Stopped,
     /// A quantity that must be known is not.
     #[error("{key}: not known; give its value in the file of known values, or free it")]
     Unknown {

@@ -1,8 +1,9 @@
 //! From a curve and what is known of it to a report.
 
+use crate::attend::{Attended, Stage};
 use crate::data::Curve;
 use crate::error::FitError;
-use crate::fit::objective::WHITE;
+use crate::fit::objective::{DerivedPrior, WHITE};
 use crate::fit::{COARSE, COARSE_ERROR, Fitted, Setup, descent, elements, fit, refit};
 use crate::parameters::{Key, Parameters};
 use crate::record::{
@@ -15,6 +16,8 @@ use crate::uncertainty::{Derived, Linear, Quantity, linear};
 
 /// Condition number beyond which the parabola is not trusted.
 const ILL_CONDITIONED: f64 = 1e3;
+/// `χ²/dof` beyond which no profile is followed unless it is asked for.
+const MEANINGLESS: f64 = 10.0;
 /// The quantities whose profiles are followed where it is not.
 pub const PROFILED: [Quantity; 4] = [
     Quantity::Derived(Derived::Young),
@@ -55,8 +58,23 @@ pub fn identify(
     setup: &Setup,
     profiles: &Profiles,
 ) -> Result<Identification, FitError> {
+    identify_attended(curve, setup, profiles, Attended::default())
+}
+
+/// The same for somebody who waits: told of progress, and obeyed within a fraction of a millisecond when the fit is
+/// to stop. What was found is reported then, with the warning `stopped`: the best shell so far, or the fit with
+/// the profiles that were followed to their ends.
+///
+/// # Errors
+/// As [`identify`]; [`FitError::Stopped`] when it is stopped before a first shell was found.
+pub fn identify_attended(
+    curve: &Curve,
+    setup: &Setup,
+    profiles: &Profiles,
+    attended: Attended<'_>,
+) -> Result<Identification, FitError> {
     let setup = &setup.with_lever();
-    let mut fitted = fit(curve, setup)?;
+    let mut fitted = fit(curve, setup, attended)?;
     let mut evaluations = 0;
     // a profile that finds a lower minimum starts the fit again from there, once
     for again in [true, false] {
@@ -66,9 +84,17 @@ pub fn identify(
         let found = follow(&fitted, &known, &wanted);
         evaluations += found.iter().map(|p| p.evaluations).sum::<usize>();
         let better = found.iter().find_map(|p| p.better.clone());
-        if let (Some(x), true) = (better, again) {
-            fitted = refit(fitted, &x)?;
-            continue;
+        if let (Some(x), true) = (better, again && !attended.is_stopped()) {
+            let before = fitted.clone();
+            match refit(fitted, &x) {
+                Ok(better) => {
+                    fitted = better;
+                    continue;
+                }
+                // a stop keeps what there was
+                Err(FitError::Stopped) => fitted = before,
+                Err(error) => return Err(error),
+            }
         }
         return Ok(report(curve, setup, profiles, &fitted, &known, reach, &found, evaluations));
     }
@@ -93,6 +119,8 @@ fn wanted(profiles: &Profiles, fitted: &Fitted<'_>, known: &Linear, reach: Reach
         Profiles::None => Vec::new(),
         Profiles::These(these) => these.clone(),
         Profiles::WhereNeeded if is_parabola(fitted, known, reach) => Vec::new(),
+        // intervals of a model that does not describe the curve say nothing
+        Profiles::WhereNeeded if fitted.residuals.chi2_dof > MEANINGLESS => Vec::new(),
         Profiles::WhereNeeded => PROFILED.to_vec(),
     }
 }
@@ -112,9 +140,13 @@ fn follow(fitted: &Fitted<'_>, known: &Linear, wanted: &[Quantity]) -> Vec<Profi
     };
     wanted
         .iter()
-        .filter_map(|quantity| {
+        .enumerate()
+        .filter_map(|(done, quantity)| {
+            coarse.attended.tell(Stage::Profiles, done, wanted.len());
             let along = quantity.along(&coarse.free)?;
-            profile(&coarse, &minimum, *quantity, known.sd(&along))
+            let found = profile(&coarse, &minimum, *quantity, known.sd(&along));
+            // half a profile is none
+            found.filter(|_| !coarse.attended.is_stopped())
         })
         .collect()
 }
@@ -161,6 +193,14 @@ fn report(
             code: "profile-needed",
             text: "the covariance of the moduli is not to be trusted here and no profile was followed: \
                    none of them is called identified"
+                .to_owned(),
+        });
+    }
+    if objective.attended.is_stopped() {
+        warnings.push(crate::record::Warning {
+            code: "stopped",
+            text: "the fit was stopped before its end: this is the best that was found until then, without the \
+                   profiles that were still to be followed"
                 .to_owned(),
         });
     }
@@ -241,6 +281,10 @@ fn estimate(
         Quantity::Key(key) => setup.priors.iter().find(|prior| prior.key == key),
         Quantity::Derived(_) => None,
     };
+    let derived = match quantity {
+        Quantity::Derived(of) => setup.derived.iter().find(|prior| prior.of == of),
+        Quantity::Key(_) => None,
+    };
     let at_bound = along.as_ref().is_some_and(|along| {
         known.at_bound.iter().zip(along.iter()).any(|(bound, a)| *bound && *a != 0.0)
     });
@@ -267,6 +311,7 @@ fn estimate(
         _ => None,
     };
     let prior_sd = prior.map(|prior| prior.in_coordinate().1);
+    let prior_sd = prior_sd.or(derived.map(DerivedPrior::relative_sd));
     // of baseline and contact point what matters is how far they are known beside their range
     let verdict = if quantity.is_logarithmic() {
         let half = if half95.iter().all(Option::is_some) { half68 } else { [None; 2] };
@@ -289,12 +334,15 @@ fn estimate(
         interval68: ends(half68),
         interval95: ends(half95),
         method: if profile.is_some() { "profile" } else { "covariance" },
-        prior: prior.map(|prior| PriorRecord { value: prior.value, sd: prior.sd }),
-        prior_pull: prior.map(|prior| {
-            let (centre, sd) = prior.in_coordinate();
-            let Quantity::Key(key) = quantity else { return f64::NAN };
-            (key.coordinate(value) - centre) / sd
-        }),
+        prior: prior
+            .map(|prior| PriorRecord { value: prior.value, sd: prior.sd })
+            .or(derived.map(|prior| PriorRecord { value: prior.value, sd: prior.sd })),
+        prior_pull: prior
+            .map(|prior| {
+                let (centre, sd) = prior.in_coordinate();
+                (prior.key.coordinate(value) - centre) / sd
+            })
+            .or(derived.map(|prior| prior.pull(p))),
         at_bound,
         verdict: Some(verdict),
     }

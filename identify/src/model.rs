@@ -1,6 +1,7 @@
 //! From parameters to what an instrument would read at every sample.
 
 use crate::assign::assign;
+use crate::attend::Attended;
 use crate::branch::{Effort, GROUPS, Group, Span, trace};
 use crate::data::Curve;
 use crate::error::ModelError;
@@ -85,15 +86,40 @@ impl Model {
         self.branch_over(range, p, keys)
     }
 
+    /// The same for somebody who may stop it.
+    ///
+    /// # Errors
+    /// As [`Model::branch`], and when it is stopped.
+    pub fn branch_attended(
+        &self,
+        curve: &Curve,
+        p: &Parameters,
+        keys: &[Key],
+        attended: Attended<'_>,
+    ) -> Result<(LeverBranch, Resolution), ModelError> {
+        let range = (p[Key::Contact] - curve.farthest(), p[Key::Contact] - curve.nearest());
+        self.traced(range, p, keys, &|| attended.is_stopped())
+    }
+
     /// The branch over a range of travels, m.
     ///
     /// # Errors
     /// As [`Model::branch`].
     pub fn branch_over(
         &self,
+        range: (f64, f64),
+        p: &Parameters,
+        keys: &[Key],
+    ) -> Result<(LeverBranch, Resolution), ModelError> {
+        self.traced(range, p, keys, &|| false)
+    }
+
+    fn traced(
+        &self,
         (least, most): (f64, f64),
         p: &Parameters,
         keys: &[Key],
+        stop: &dyn Fn() -> bool,
     ) -> Result<(LeverBranch, Resolution), ModelError> {
         let reach = f64::from(self.contacts) * p[Key::Radius];
         let needed = most + BEYOND * (most - least);
@@ -102,12 +128,15 @@ impl Model {
         let (scale, lever) = (p.force_scale(), p[Key::SpringConstant]);
         let travel = |z: f64, f: f64| reach * (1.0 - z) + scale * f / lever;
         let enough = |z: f64, f: f64| travel(z, f) >= needed;
-        let span = Span { start: 1.0 + 1.05 * gap, end: LOWEST, enough: &enough };
+        let span = Span { start: 1.0 + 1.05 * gap, end: LOWEST, enough: &enough, stop };
         let branch = trace(self.law, p, &span, self.effort, &groups_of(keys))?;
         if branch.nodes.len() < 4 || !branch.complete {
             let farthest = branch.nodes.iter().map(|n| travel(n.z, n.force));
             let reached = farthest.fold(f64::NEG_INFINITY, f64::max);
-            return Err(ModelError::TooShort { reached, needed });
+            return Err(match branch.too_dear {
+                Some(most) => ModelError::TooDear { most, reached },
+                None => ModelError::TooShort { reached, needed },
+            });
         }
         let resolution = branch.resolution;
         Ok((LeverBranch::new(branch, p, self.contacts)?, resolution))

@@ -3,6 +3,7 @@
 //! The covariance is that of the linearised problem at the truth, with priors and the lever's error, for curves
 //! that end deeper and deeper. It says what is possible at best; a fit's profiles say what was.
 
+use crate::attend::Attended;
 use crate::branch::Effort;
 use crate::data::{Curve, Direction, Segment};
 use crate::error::ModelError;
@@ -71,7 +72,13 @@ pub fn plan(experiment: &Experiment, depths: usize) -> Result<Vec<Depth>, ModelE
         law: setup.law,
         contacts: setup.contacts,
         nominal_spring_constant: p[Key::SpringConstant],
-        effort: Effort { elements: ELEMENTS, points: POINTS, force_error: 0.01 * experiment.noise },
+        effort: Effort {
+            elements: ELEMENTS,
+            points: POINTS,
+            force_error: 0.01 * experiment.noise,
+            work: f64::INFINITY,
+            max_angle: Effort::ANGLE,
+        },
     };
     let reach = f64::from(setup.contacts) * p[Key::Radius];
     // the lever bends too: far enough for the deepest height, cut where that is
@@ -81,7 +88,7 @@ pub fn plan(experiment: &Experiment, depths: usize) -> Result<Vec<Depth>, ModelE
     let branch = loop {
         match model.branch_over(range, &p, keys) {
             Ok((branch, _)) => break branch,
-            Err(ModelError::TooShort { reached, .. })
+            Err(ModelError::TooShort { reached, .. } | ModelError::TooDear { reached, .. })
                 if reached < range.1 && reached > 0.2 * stiff =>
             {
                 range.1 = 0.97 * reached;
@@ -160,6 +167,8 @@ fn information(
         base: setup.base,
         free: keys.clone(),
         priors: setup.priors.clone(),
+        derived: setup.derived.clone(),
+        attended: Attended::default(),
         bounds: vec![(f64::NEG_INFINITY, f64::INFINITY); keys.len()],
         robust: false,
     };

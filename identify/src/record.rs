@@ -188,7 +188,8 @@ pub struct Row {
 impl Report {
     /// Whether the model describes the data: settled, and `χ²/dof ≤ 2`.
     pub fn is_good(&self) -> bool {
-        self.quality.converged && self.quality.chi2_dof <= 2.0
+        let stopped = self.warnings.iter().any(|warning| warning.code == "stopped");
+        self.quality.converged && self.quality.chi2_dof <= 2.0 && !stopped
     }
 
     /// A quantity by its name.

@@ -8,11 +8,17 @@ use identify::branch::{Effort, GROUPS, Group, Span, trace};
 use identify::model::Model;
 use identify::{Key, LawName, Parameters};
 
-const EFFORT: Effort = Effort { elements: 60, points: 600, force_error: 1e-14 };
+const EFFORT: Effort = Effort {
+    elements: 60,
+    points: 600,
+    force_error: 1e-14,
+    work: f64::INFINITY,
+    max_angle: Effort::ANGLE,
+};
 
 /// The end of a branch at a plate height: force, and its sensitivities at that height.
 fn end(law: LawName, p: &Parameters, z: f64) -> (f64, [f64; GROUPS]) {
-    let span = Span { start: 1.2, end: z, enough: &|_, _| false };
+    let span = Span { start: 1.2, end: z, enough: &|_, _| false, stop: &|| false };
     let branch = trace(law, p, &span, Effort { force_error: 1.0, ..EFFORT }, &Group::ALL).unwrap();
     let node = branch.nodes.last().unwrap();
     assert!((node.z - z).abs() < 1e-12);

@@ -27,6 +27,8 @@ pub(super) fn letters(kind: &str) -> &'static str {
         "hopf" => "HB",
         "zero-force" => "ZF",
         "pull-off" => "PO",
+        "knee" => "K",
+        "contact" => "C",
         "cusp" => "CP",
         "bogdanov-takens" => "BT",
         "generalised-hopf" => "GH",

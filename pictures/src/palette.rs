@@ -78,6 +78,8 @@ pub(super) fn form(kind: &str) -> Form {
         "branch-point" => Form::Square,
         "zero-force" => Form::Up,
         "pull-off" => Form::Down,
+        "knee" => Form::Diamond,
+        "contact" => Form::Ring,
         "hopf" | "generalised-hopf" => Form::Ring,
         "period-doubling" => Form::Up,
         "neimark-sacker" => Form::Down,

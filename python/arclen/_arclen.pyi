@@ -194,7 +194,8 @@ def fit_curve(
     law: str | None,
     profile: str | None,
     asked: dict[str, Any],
-) -> tuple[dict[str, Any] | None, str | None]: ...
+    progress: Callable[[str, float], Any] | None,
+) -> tuple[dict[str, Any] | None, str | None, BaseException | None]: ...
 def plan_measurement(
     case: RawCase, known: str | None, keys: list[str], asked: dict[str, Any]
 ) -> tuple[str, str]: ...

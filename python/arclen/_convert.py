@@ -404,6 +404,32 @@ def progress(progress: Any) -> Callable[..., Any] | None:
     return update
 
 
+def fit_progress(progress: Any) -> Callable[[str, float], Any] | None:
+    """What is told how far a fit is."""
+    if progress is None or progress is False:
+        return None
+    if callable(progress):
+        return progress
+    if progress is not True:
+        raise TypeError(f"progress: {progress!r} is neither a bool nor callable")
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        return None
+    bar = tqdm(total=100, unit="%", bar_format="{l_bar}{bar}| {elapsed} {postfix}")
+
+    def update(stage: str, share: float) -> bool:
+        # the next of several curves begins anew
+        if 100 * share < bar.n:
+            bar.reset()
+        bar.set_postfix_str(stage, refresh=False)
+        bar.update(100 * share - bar.n)
+        return False
+
+    update.close = bar.close  # type: ignore[attr-defined]
+    return update
+
+
 def write(path: str | os.PathLike[str], content: bytes) -> None:
     """Replaces a file at once, so that nobody reads half of it."""
     folder, name = os.path.split(os.fspath(path))

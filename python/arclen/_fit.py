@@ -16,6 +16,7 @@ import numpy as np
 from . import _arclen
 from . import _convert as convert
 from ._case import Case, _flat, _value, resolved
+from ._study import settled
 
 if TYPE_CHECKING:
     import pandas
@@ -250,6 +251,7 @@ def fit(
     range: str | None = None,
     profile: str | Iterable[str] | None = None,
     robust: bool = False,
+    progress: Any = None,
     **keys: Any,
 ) -> Any:
     """Fits measured force curves, as ``arclen fit`` does.
@@ -275,6 +277,10 @@ def fit(
         Quantities whose profile likelihoods are followed, or ``"none"``.
     robust : bool, optional
         Whether outliers count less.
+    progress : bool or callable, optional
+        True shows a bar of tqdm; a function is called with the stage (``"starts"``, ``"descents"``,
+        ``"polish"``, ``"profiles"``) and the share of the work that is done, and stops the fit by returning
+        True.
     **keys
         Values in place of those of `known`: ``spring_constant="0.08 N/m"``, or with the table,
         ``instrument__noise="50 pN"``.
@@ -291,13 +297,29 @@ def fit(
         When something is wrong with the curve or what is known, or nothing fits it. The message names the
         file, the key, the value and the remedy.
     KeyboardInterrupt
-        At Ctrl-C; a fit keeps nothing half done.
+        At Ctrl-C before a first shell was found. Later a fit keeps what it has, with the warning ``stopped``
+        in its record and an `InterruptedWarning`; of several curves those that follow have an error.
     """
     given, asked = _asked(known, keys, fix, free, prior, segments, range, robust)
     if isinstance(profile, Iterable) and not isinstance(profile, str):
         profile = ",".join(profile)
     if law is not None and not isinstance(law, str):
         raise TypeError(f"law: {law!r} is not a name")
+    told = convert.fit_progress(progress)
+    try:
+        return _fits(curves, given, law, profile, asked, told)
+    finally:
+        getattr(told, "close", lambda: None)()
+
+
+def _fits(
+    curves: Any,
+    given: tuple[str | None, list[str]],
+    law: str | None,
+    profile: Any,
+    asked: dict[str, Any],
+    told: Any,
+) -> Any:
     with tempfile.TemporaryDirectory(prefix="arclen-") as scratch:
         several = isinstance(curves, (list, tuple))
         paths = [
@@ -309,14 +331,20 @@ def fit(
         except ValueError as error:
             _refuse(error)
         found: list[Fit | ValueError] = []
+        stopped: BaseException | None = None
         for source in sources:
+            if stopped is not None:
+                found.append(ValueError(f"{source[0]}: stopped"))
+                continue
             try:
-                found.append(_fitted(source, given, law, profile, asked, scratch))
+                one, stopped = _fitted(source, given, law, profile, asked, scratch, told)
+                found.append(one)
             except ValueError as error:
                 if len(sources) == 1 and not several:
                     raise
                 found.append(error)
-    return found[0] if len(found) == 1 and not several else found
+    result = found[0] if len(found) == 1 and not several else found
+    return settled(result, stopped)
 
 
 def _fitted(
@@ -326,12 +354,17 @@ def _fitted(
     profile: Any,
     asked: dict[str, Any],
     scratch: str,
-) -> Fit:
+    told: Any,
+) -> tuple[Fit, BaseException | None]:
     try:
         known, keys = given
-        record, reason = _arclen.fit_curve(source, known, keys, law, profile, asked)
+        record, reason, stopped = _arclen.fit_curve(
+            source, known, keys, law, profile, asked, told
+        )
     except ValueError as error:
         _refuse(error, scratch)
+    if record is None and stopped is not None:
+        raise stopped
     if record is None:
         raise ValueError(_plain(reason or "nothing fits", scratch))
     # the file of a curve that was given as arrays is no place to be named
@@ -340,7 +373,7 @@ def _fitted(
     record["files"] = {
         name: text.replace(scratch + os.sep, "") for name, text in record["files"].items()
     }
-    return Fit(record)
+    return Fit(record), stopped
 
 
 def plan(

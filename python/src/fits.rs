@@ -2,14 +2,16 @@
 
 use crate::attended::attended;
 use crate::studies::{RawCase, given, json};
-use identify::LawName;
 use identify::data::Direction;
+use identify::{Attended, LawName, Progress};
 use numpy::PyArray1;
 use pictures::fit::{Drawn, draw_fit};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use study::fit::files::{files, fit_json, summary};
 use study::fit::lab::{self, Lab, Wishes};
 use study::fit::plan::planned;
@@ -72,11 +74,44 @@ pub(crate) fn curve_sources(
     Ok(found.into_iter().map(|source| (source.path, source.number)).collect())
 }
 
-/// A fit of one curve: its record, or in words why nothing fits it.
-type Found<'py> = (Option<Bound<'py, PyDict>>, Option<String>);
+/// A fit of one curve: its record, or in words why nothing fits it; and what it was stopped by.
+type Found<'py> = (Option<Bound<'py, PyDict>>, Option<String>, Option<PyErr>);
+
+/// Who waits for a fit: a function of Python that is told of progress and stops the fit by returning True, and
+/// what it or a signal has raised.
+struct Waiting {
+    progress: Option<Py<PyAny>>,
+    stop: AtomicBool,
+    failure: Mutex<Option<PyErr>>,
+}
+
+impl Waiting {
+    fn tell(&self, at: Progress) {
+        let Some(progress) = &self.progress else { return };
+        let told =
+            Python::attach(|py| progress.bind(py).call1((at.stage.name(), at.share))?.is_truthy());
+        match told {
+            Ok(false) => {}
+            Ok(true) => self.stop.store(true, Ordering::Relaxed),
+            Err(error) => self.fail(error),
+        }
+    }
+
+    /// Stops the fit; the first of several reasons counts.
+    fn fail(&self, error: PyErr) {
+        let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+        failure.get_or_insert(error);
+        self.stop.store(true, Ordering::Relaxed);
+    }
+
+    fn failure(&self) -> Option<PyErr> {
+        self.failure.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
 
 /// Fits one curve.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub(crate) fn fit_curve<'py>(
     py: Python<'py>,
     curve: (PathBuf, Option<usize>),
@@ -85,6 +120,7 @@ pub(crate) fn fit_curve<'py>(
     law: Option<&str>,
     profile: Option<&str>,
     asked: Asked,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Found<'py>> {
     let lab = laboratory(known.as_ref(), keys)?;
     let laws = match law {
@@ -101,12 +137,27 @@ pub(crate) fn fit_curve<'py>(
     };
     let profiles = fit::profiles(profile).map_err(PyValueError::new_err)?;
     let source = fit::Source { path: curve.0, number: curve.1 };
-    let work = move || fit::fit_file(&source, &lab, laws, asked.wishes(), &profiles);
-    // a fit cannot be stopped; what it finds is not waited for
-    match attended(py, work, Some)? {
-        Ok(outcome) => Ok((Some(record(py, &outcome)?), None)),
+    let waiting =
+        Arc::new(Waiting { progress, stop: AtomicBool::new(false), failure: Mutex::new(None) });
+    let other = Arc::clone(&waiting);
+    let work = move || {
+        let tell = |at: Progress| other.tell(at);
+        let attended = Attended { stop: Some(&other.stop), listener: Some(&tell) };
+        fit::fit_file(&source, &lab, laws, asked.wishes(), &profiles, attended)
+    };
+    // a fit that is asked to stop ends within milliseconds, and keeps what it has
+    let stopping = |raised| {
+        waiting.fail(raised);
+        None
+    };
+    let found = attended(py, work, stopping)?;
+    let failure = waiting.failure();
+    match found {
+        Ok(outcome) => Ok((Some(record(py, &outcome)?), None, failure)),
         Err(Failure::Input(message)) => Err(PyValueError::new_err(message)),
-        Err(Failure::NotFound(message)) => Ok((None, Some(message))),
+        Err(Failure::NotFound(message) | Failure::Stopped(message)) => {
+            Ok((None, Some(message), failure))
+        }
     }
 }
 

@@ -194,3 +194,19 @@ def test_a_plan_is_that_of_the_program(tmp_path):
         program = shutil.which(os.environ["ARCLEN"])
         run = subprocess.run([program, *words], cwd=tmp_path, check=True, capture_output=True)
         assert json.loads(run.stdout)["depths"] == plan.depths
+
+
+def test_a_fit_tells_how_far_it_is_and_can_be_stopped(curve):
+    told = []
+    whole = arclen.fit(curve, LAB, profile="none", progress=lambda *at: told.append(at) and None)
+    shares = [share for _, share in told]
+    assert shares == sorted(shares) and {"starts", "descents", "polish"} <= {s for s, _ in told}
+    part = arclen.fit(curve, LAB, progress=lambda stage, share: stage == "polish")
+    assert whole.is_good and not part.is_good
+    assert any(one["code"] == "stopped" for one in part.record["warnings"])
+    with pytest.raises(ValueError, match="stopped before a first shell"):
+        arclen.fit(curve, LAB, progress=lambda stage, share: True)
+    with pytest.raises(ZeroDivisionError):
+        arclen.fit(curve, LAB, progress=lambda stage, share: 1 / 0)
+    with pytest.raises(TypeError, match="progress"):
+        arclen.fit(curve, LAB, progress=3)

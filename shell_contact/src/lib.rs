@@ -38,6 +38,7 @@ pub mod forward;
 pub mod gas;
 pub mod half;
 pub mod identify;
+pub mod landmarks;
 pub mod membrane;
 pub mod meridian;
 pub mod modes;

@@ -1,14 +1,16 @@
 //! `arclen fit`: from measured curves to the shell's properties.
 
 use super::delivery::Made;
+use super::progress::FitWatch;
+use crate::Listen;
 use crate::advice::Advised;
 use crate::arguments::{FitArguments, SegmentsWanted, set};
 use crate::exit::Exit;
 use crate::terminal;
 use identify::data::Direction;
-use identify::{LawName, Profiles};
-use indicatif::ProgressBar;
-use pictures::fit::{self as drawing, Drawn, draw_fit};
+use identify::{Attended, LawName, Profiles};
+use pictures::REPORT;
+use pictures::fit::{self as drawing, Drawn, draw_fit, fit_report};
 use rayon::prelude::*;
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -23,7 +25,7 @@ const FITS: &str = "fits.csv";
 const BATCH: &str = "fits.json";
 
 /// Fit the curves.
-pub(super) fn fit(arguments: &FitArguments) -> Exit {
+pub(super) fn fit(arguments: &FitArguments, listen: &Listen<'_>) -> Exit {
     let prepared = prepare(arguments);
     let (lab, laws, profiles) = match prepared {
         Ok(prepared) => prepared,
@@ -33,9 +35,26 @@ pub(super) fn fit(arguments: &FitArguments) -> Exit {
     if let Some(case) = &arguments.plan {
         return plan(arguments, case, &lab, wishes);
     }
-    match sources(&arguments.curves, &lab).as_slice() {
-        [one] => single(arguments, one, &lab, laws, wishes, &profiles),
-        several => batch(arguments, several, &lab, laws, wishes, &profiles),
+    let sources = sources(&arguments.curves, &lab);
+    let task = Task { arguments, lab: &lab, laws, wishes, profiles: &profiles };
+    match sources.as_slice() {
+        [one] => single(&task, one, listen),
+        several => batch(&task, several, listen),
+    }
+}
+
+/// What every curve is fitted with.
+struct Task<'a> {
+    arguments: &'a FitArguments,
+    lab: &'a Lab,
+    laws: Laws,
+    wishes: Wishes<'a>,
+    profiles: &'a Profiles,
+}
+
+impl Task<'_> {
+    fn fit(&self, source: &Source, attended: Attended<'_>) -> Result<Outcome, Failure> {
+        fit_file(source, self.lab, self.laws, self.wishes, self.profiles, attended)
     }
 }
 
@@ -118,24 +137,23 @@ fn stem(source: &Source) -> String {
     source.number.map_or(name.clone(), |number| format!("{name}-{number}"))
 }
 
-fn single(
-    arguments: &FitArguments,
-    source: &Source,
-    lab: &Lab,
-    laws: Laws,
-    wishes: Wishes<'_>,
-    profiles: &Profiles,
-) -> Exit {
+fn single(task: &Task<'_>, source: &Source, listen: &Listen<'_>) -> Exit {
+    let arguments = task.arguments;
     let inputs = inputs(arguments);
-    let names: Vec<&str> = [FIT].into_iter().chain(TABLES).chain(drawing::NAMES).collect();
+    let names: Vec<&str> = [FIT, REPORT].into_iter().chain(TABLES).chain(drawing::NAMES).collect();
     let folder = match arguments.output.folder(&stem(source), &names, &inputs) {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
-    let outcome = match fit_file(source, lab, laws, wishes, profiles) {
+    let watch = FitWatch::new(1, arguments.output.quiet, listen);
+    let listener = |progress| watch.update(progress);
+    let attended = Attended { stop: Some(watch.stop()), listener: Some(&listener) };
+    let found = task.fit(source, attended);
+    watch.finish();
+    let outcome = match found {
         Ok(outcome) => outcome,
         Err(Failure::Input(message)) => return refuse(&message),
-        Err(Failure::NotFound(message)) => {
+        Err(Failure::NotFound(message) | Failure::Stopped(message)) => {
             terminal::error(&message);
             let text = json!({ "curve": source.label(), "error": message });
             let made = Made::json::<serde_json::Error>(FIT, Ok(format!("{text:#}\n")));
@@ -146,6 +164,9 @@ fn single(
     let mut made = Made::json(FIT, fit_json(&outcome));
     if folder.is_some() {
         made.files(files(&outcome, drawn(arguments, Drawn::SvgAndPng)));
+        if arguments.report {
+            made.attempt(REPORT, Ok::<_, String>(fit_report(&outcome)));
+        }
     }
     let complete = outcome.best.report.is_good();
     arguments.output.deliver(
@@ -163,26 +184,18 @@ fn single(
     )
 }
 
-fn batch(
-    arguments: &FitArguments,
-    sources: &[Source],
-    lab: &Lab,
-    laws: Laws,
-    wishes: Wishes<'_>,
-    profiles: &Profiles,
-) -> Exit {
+fn batch(task: &Task<'_>, sources: &[Source], listen: &Listen<'_>) -> Exit {
+    let arguments = task.arguments;
     let inputs = inputs(arguments);
     let folder = match arguments.output.folder("fits", &[BATCH, FITS], &inputs) {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
-    let bar = (!arguments.output.quiet && terminal::watched())
-        .then(|| ProgressBar::new(sources.len() as u64));
+    let watch = FitWatch::new(sources.len(), arguments.output.quiet, listen);
+    let attended = Attended { stop: Some(watch.stop()), listener: None };
     let one = |source: &Source| {
-        let outcome = fit_file(source, lab, laws, wishes, profiles);
-        if let Some(bar) = &bar {
-            bar.inc(1);
-        }
+        let outcome = task.fit(source, attended);
+        watch.done();
         outcome
     };
     let all = || sources.par_iter().map(one).collect::<Vec<_>>();
@@ -192,9 +205,7 @@ fn batch(
             Ok(pool) => pool.install(all),
             Err(error) => return refuse(&format!("--jobs {jobs}: {error}")),
         };
-    if let Some(bar) = &bar {
-        bar.finish_and_clear();
-    }
+    watch.finish();
     if outcomes.iter().all(|o| matches!(o, Err(Failure::Input(_)))) {
         for outcome in outcomes {
             if let Err(failure) = outcome {
@@ -216,7 +227,12 @@ fn batch(
                 rows.push(FitsRow::of(report, &name));
                 listed.push(json!({ "curve": curve, "folder": name, "good": report.is_good() }));
                 let json = fit_json(outcome).map(|text| (FIT.to_owned(), text.into_bytes()));
-                let own = files(outcome, drawn(arguments, Drawn::Svg));
+                let own = files(outcome, drawn(arguments, Drawn::Svg)).map(|mut files| {
+                    if arguments.report {
+                        files.push((REPORT.to_owned(), fit_report(outcome).into_bytes()));
+                    }
+                    files
+                });
                 match (json, own) {
                     (Ok(json), Ok(own)) => contents.extend(
                         std::iter::once(json)
@@ -232,7 +248,9 @@ fn batch(
             }
             Err(failure) => {
                 complete = false;
-                terminal::error(&failure.message());
+                if !matches!(failure, Failure::Stopped(_)) {
+                    terminal::error(&failure.message());
+                }
                 rows.push(FitsRow::failed(&curve, failure.message()));
                 listed.push(json!({ "curve": curve, "error": failure.message() }));
             }

@@ -29,7 +29,7 @@ pub(crate) fn dispatch(arguments: &Arguments, listen: &Listen<'_>) -> Exit {
         Command::Trace(arguments) => trace::trace(arguments, listen),
         Command::Diagram(arguments) => diagram::diagram(arguments, listen),
         Command::Explore(arguments) => explore::explore(arguments, listen),
-        Command::Fit(arguments) => fit::fit(arguments),
+        Command::Fit(arguments) => fit::fit(arguments, listen),
         Command::Figure(arguments) => figure::figure(arguments, listen),
         Command::Orbits(arguments) => orbits::orbits(arguments, listen),
         Command::Cycle(arguments) => cycle::cycle(arguments, listen),

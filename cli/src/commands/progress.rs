@@ -19,6 +19,58 @@ pub(super) fn requests(listen: &Listen<'_>) -> Arc<AtomicBool> {
     })
 }
 
+/// Shows how far a fit is, and has the request to stop it.
+pub(super) struct FitWatch {
+    bar: Option<ProgressBar>,
+    stop: Arc<AtomicBool>,
+}
+
+impl FitWatch {
+    /// Of one curve, or of several.
+    pub(super) fn new(curves: usize, quiet: bool, listen: &Listen<'_>) -> Self {
+        let stop = requests(listen);
+        let bar = (!quiet && terminal::watched()).then(|| {
+            let (length, template) = match curves {
+                1 => (LENGTH, "{bar:32} {elapsed} {msg}"),
+                _ => (curves as u64, "{bar:32} {pos} of {len} curves, {elapsed}, {eta} to go"),
+            };
+            let bar = ProgressBar::new(length);
+            if let Ok(style) = ProgressStyle::with_template(template) {
+                bar.set_style(style);
+            }
+            bar
+        });
+        FitWatch { bar, stop }
+    }
+
+    /// Shows how far one fit is.
+    pub(super) fn update(&self, progress: identify::Progress) {
+        if let Some(bar) = &self.bar {
+            bar.set_position((progress.share * LENGTH as f64) as u64);
+            bar.set_message(progress.stage.name());
+        }
+    }
+
+    /// One of several is done.
+    pub(super) fn done(&self) {
+        if let Some(bar) = &self.bar {
+            bar.inc(1);
+        }
+    }
+
+    /// The request to stop.
+    pub(super) fn stop(&self) -> &AtomicBool {
+        &self.stop
+    }
+
+    /// Clears the line.
+    pub(super) fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 /// Shows progress and asks for a stop after a signal.
 pub(super) struct Observer {
     bar: Option<ProgressBar>,

@@ -56,13 +56,29 @@ pub fn descend(
 ) -> Option<Minimum> {
     let mut x = start.clone();
     objective.clamp(&mut x);
-    let mut at = objective.evaluate(&x).ok()?;
-    let mut evaluations = 1;
+    let at = objective.evaluate(&x).ok()?;
+    let found = descend_from(objective, x, at, held, limits);
+    Some(Minimum { evaluations: found.evaluations + 1, ..found })
+}
+
+/// Descends from a place within the bounds at which the objective is known. A descent that is stopped has not
+/// converged.
+pub fn descend_from(
+    objective: &Objective<'_>,
+    mut x: DVector<f64>,
+    mut at: Evaluation,
+    held: Option<&Held>,
+    limits: Limits,
+) -> Minimum {
+    let mut evaluations = 0;
     let mut damping = limits.damping;
     // an undamped step failed: what damped ones gain must do
     let mut refused = false;
     let mut converged = false;
-    while evaluations < limits.evaluations && damping < LAST_DAMPING {
+    while evaluations < limits.evaluations
+        && damping < LAST_DAMPING
+        && !objective.attended.is_stopped()
+    {
         let Some(step) = step(objective, &x, &at, held, damping) else { break };
         let mut next = &x + step;
         objective.clamp(&mut next);
@@ -96,7 +112,7 @@ pub fn descend(
             }
         }
     }
-    Some(Minimum { x, at, converged, evaluations })
+    Minimum { x, at, converged, evaluations }
 }
 
 /// The damped step, with what is at a bound and pushed against it left out.

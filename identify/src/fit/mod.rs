@@ -5,18 +5,21 @@
 
 pub mod descent;
 pub mod objective;
+mod search;
 pub mod starts;
 
+use crate::attend::{Attended, Stage};
 use crate::branch::Effort;
 use crate::data::{Curve, Direction, median};
 use crate::error::FitError;
 use crate::lever::LeverBranch;
 use crate::model::Model;
 use crate::parameters::{Key, LawName, Parameters};
-use descent::{BOLD, CAREFUL, Limits, Minimum, descend};
+use descent::{BOLD, CAREFUL, Limits, Minimum, descend, descend_from};
 use nalgebra::DVector;
-use objective::{Objective, Prior, Residuals};
-use starts::{Look, grid, look};
+use objective::{DerivedPrior, Objective, Prior, Residuals};
+use search::search;
+use starts::{AGAIN, Look, grid, look};
 use std::f64::consts::PI;
 
 /// What the laboratory knows and asks for.
@@ -32,6 +35,8 @@ pub struct Setup {
     pub free: Vec<Key>,
     /// What is known of it.
     pub priors: Vec<Prior>,
+    /// What is known of what follows from the moduli.
+    pub derived: Vec<DerivedPrior>,
     /// Relative standard deviation of the lever's stiffness; 0: known exactly.
     pub spring_constant_sd: f64,
     /// Soft-L1 in place of squares.
@@ -55,6 +60,7 @@ impl Setup {
             base,
             free: vec![Chi, Bending, Adhesion, Film, Radius, Contact, Offset, Tilt],
             priors,
+            derived: Vec::new(),
             spring_constant_sd: 0.1,
             robust: false,
             only: None,
@@ -95,8 +101,6 @@ const MOST_SQUEEZED: f64 = 1.5;
 const LEAST_DEFLECTION: f64 = 1e-12;
 /// Samples of the thinned curve on which starts are compared.
 const THINNED: usize = 400;
-/// Descents from the grid.
-const DESCENTS: usize = 6;
 /// Elements per wavelength of the shell on the coarse mesh, and the fewest: forces are good to 1e-4.
 const PER_WAVELENGTH: f64 = 15.0;
 /// The fewest and the most elements, coarse.
@@ -109,6 +113,17 @@ pub(crate) const COARSE_ERROR: f64 = 0.2;
 const FINE_ERROR: f64 = 0.005;
 /// Most points of a branch.
 const POINTS: usize = 500;
+/// Most work for a branch, in corrections on 100 elements: 0.1 ms each, so that no evaluation takes half a second.
+/// Those of a good fit take a tenth of it.
+const MOST_WORK: f64 = 2500.0;
+/// The same on the way to a fit: a mesh that does not resolve its film has a fold at every node.
+const ROUGH_WORK: f64 = 800.0;
+/// The same for the grid, unless it leaves too few starts.
+const GRID_WORK: f64 = 350.0;
+/// The fewest starts.
+const FEWEST_STARTS: usize = 6;
+/// `χ²/dof` beyond which the fine mesh has nothing to say: a few evaluations for the record.
+const HOPELESS: f64 = 20.0;
 
 /// A fit before its uncertainty.
 #[derive(Debug, Clone)]
@@ -218,6 +233,8 @@ pub fn check<'a>(curve: &'a Curve, setup: &Setup) -> Result<(Objective<'a>, Look
             elements: COARSE.0 as usize,
             points: POINTS,
             force_error: COARSE_ERROR * noise,
+            work: ROUGH_WORK,
+            max_angle: Effort::WIDE,
         },
     };
     let ln = |low: f64, high: f64| (low.ln(), high.ln());
@@ -245,6 +262,8 @@ pub fn check<'a>(curve: &'a Curve, setup: &Setup) -> Result<(Objective<'a>, Look
         base: *p,
         free: setup.free.clone(),
         priors: setup.priors.clone(),
+        derived: setup.derived.clone(),
+        attended: Attended::default(),
         bounds: bounds.collect(),
         robust: setup.robust,
     };
@@ -255,8 +274,13 @@ pub fn check<'a>(curve: &'a Curve, setup: &Setup) -> Result<(Objective<'a>, Look
 ///
 /// # Errors
 /// When there is nothing to fit, or no start leads anywhere.
-pub fn fit<'a>(curve: &'a Curve, setup: &Setup) -> Result<Fitted<'a>, FitError> {
+pub fn fit<'a>(
+    curve: &'a Curve,
+    setup: &Setup,
+    attended: Attended<'a>,
+) -> Result<Fitted<'a>, FitError> {
     let (mut full, look) = check(curve, setup)?;
+    full.attended = attended;
     if let Some(start) = &setup.start {
         let x = full.place(start);
         let polished = polish(&mut full, &x)?;
@@ -276,33 +300,26 @@ pub fn fit<'a>(curve: &'a Curve, setup: &Setup) -> Result<Fitted<'a>, FitError> 
     let thin_curve = curve.thinned(stride);
     let mut thin = Objective { curve: &thin_curve, ..full.clone() };
     thin.used = used_samples(&thin_curve, setup);
-    let starts = grid(&thin, &look);
-    let Some(_) = starts.first() else { return Err(FitError::NoStart) };
-    let mut evaluations = 2 * starts.len();
-    let mut minima: Vec<Minimum> = Vec::new();
-    // all a little, the better half on
-    for start in starts.iter().take(DESCENTS) {
-        let x = thin.place(&start.parameters);
-        if let Some(found) = coarse(&mut thin, &x, FIRST) {
-            evaluations += found.evaluations;
-            minima.push(found);
-        }
+    thin.model.effort.work = GRID_WORK;
+    let mut starts = grid(&thin, &look);
+    thin.model.effort.work = ROUGH_WORK;
+    if starts.len() < FEWEST_STARTS && !attended.is_stopped() {
+        starts = grid(&thin, &look);
     }
-    minima.sort_by(|a, b| a.at.cost.total_cmp(&b.at.cost));
-    minima.truncate(DESCENTS / 2);
-    for minimum in &mut minima {
-        if !minimum.converged
-            && let Some(found) = coarse(&mut thin, &minimum.x, SECOND)
-        {
-            evaluations += found.evaluations;
-            *minimum = found;
-        }
+    let none = || if attended.is_stopped() { FitError::Stopped } else { FitError::NoStart };
+    let Some(_) = starts.first() else { return Err(none()) };
+    let mut found = search(&mut thin, &starts, &look);
+    let evaluations = starts.len() + starts.len().min(AGAIN) + found.evaluations;
+    let minima = &mut found.minima;
+    let others = distinct(&thin, minima, stride as f64);
+    if minima.is_empty() {
+        return Err(none());
     }
-    minima.sort_by(|a, b| a.at.cost.total_cmp(&b.at.cost));
-    let Some(first) = minima.first() else { return Err(FitError::NoStart) };
-    let x = first.x.clone();
-    let others = distinct(&thin, &minima, stride as f64);
-    let polished = polish(&mut full, &x)?;
+    let first = minima.swap_remove(0);
+    let polished = match polish(&mut full, &first.x) {
+        Err(FitError::Stopped) => kept(&full, first).ok_or(FitError::Stopped)?,
+        polished => polished?,
+    };
     Ok(Fitted {
         best: polished.best,
         residuals: polished.residuals,
@@ -334,6 +351,17 @@ pub fn refit<'a>(earlier: Fitted<'a>, x: &DVector<f64>) -> Result<Fitted<'a>, Fi
     })
 }
 
+/// What there is when a fit is stopped before its polish has begun, or the fine mesh has no value: a minimum on a
+/// coarse one.
+fn kept(full: &Objective<'_>, minimum: Minimum) -> Option<Polished> {
+    let (x, evaluations) = (minimum.x, minimum.evaluations);
+    let at = full.evaluate_on(&x, minimum.at.branch?);
+    let best = Minimum { x, at, converged: false, evaluations };
+    let residuals = full.residuals(&best.at);
+    let (branch, resolution) = best.at.branch.clone()?;
+    Some(Polished { best, residuals, branch, resolved: resolution.is_enough(), evaluations: 0 })
+}
+
 /// The end of a fit.
 struct Polished {
     best: Minimum,
@@ -349,35 +377,61 @@ fn polish(full: &mut Objective<'_>, x: &DVector<f64>) -> Result<Polished, FitErr
     let mut x = x.clone();
     let mut evaluations = 0;
     full.widened = 1.0;
+    full.attended.tell(Stage::Polish, 0, 3);
+    let attended = full.attended;
+    let none = || if attended.is_stopped() { FitError::Stopped } else { FitError::NoStart };
+    let mut rough = None;
     full.model.effort.elements = elements(&full.parameters(&x), COARSE, 1.0);
     full.model.effort.force_error = COARSE_ERROR * full.noise;
+    full.model.effort.work = ROUGH_WORK;
+    full.model.effort.max_angle = Effort::WIDE;
     if let Some(found) =
-        descend(full, &x, None, Limits { evaluations: 25, tolerance: 1e-2, damping: CAREFUL })
+        descend(full, &x, None, Limits { evaluations: 25, tolerance: 1.0, damping: CAREFUL })
     {
         evaluations += found.evaluations;
         leave_out_jumps(full, &found);
         if full.robust {
             leave_out_outliers(full, &found);
         }
-        x = found.x;
+        x = found.x.clone();
+        rough = Some(found);
     }
+    full.attended.tell(Stage::Polish, 1, 3);
+    full.model.effort.work = MOST_WORK;
+    full.model.effort.max_angle = Effort::ANGLE;
     full.model.effort.force_error = FINE_ERROR * full.noise;
     full.model.effort.elements = elements(&full.parameters(&x), FINE, 2.0);
-    let limits = Limits { evaluations: 40, tolerance: 1e-4, damping: BOLD };
+    let hopeless =
+        rough.as_ref().is_some_and(|found| full.residuals(&found.at).chi2_dof > HOPELESS);
+    let most = if hopeless { 6 } else { 40 };
+    let limits = Limits { evaluations: most, tolerance: 1e-4, damping: BOLD };
     for last in [false, true] {
-        let Some(mut best) = descend(full, &x, None, limits) else { return Err(FitError::NoStart) };
+        let mut best = match descend(full, &x, None, limits) {
+            Some(best) => best,
+            // stopped on the way to the fine mesh, or too dear there
+            None => return rough.and_then(|found| kept(full, found)).ok_or_else(none),
+        };
         evaluations += best.evaluations;
         let residuals = full.residuals(&best.at);
         if residuals.widened() > 1.0 {
             full.widened = residuals.widened();
-            best = descend(full, &best.x, None, limits).ok_or(FitError::NoStart)?;
+            // the same branches, and so the same model: nothing is traced for the first of them
+            let branch = best.at.branch.take().ok_or_else(none)?;
+            best =
+                descend_from(full, best.x.clone(), full.evaluate_on(&best.x, branch), None, limits);
             evaluations += best.evaluations;
         }
-        let p = full.parameters(&best.x);
-        let (branch, resolution) =
-            full.model.branch(full.curve, &p, &full.free).map_err(FitError::Model)?;
+        if attended.is_stopped() {
+            best.converged = false;
+        }
+        let (branch, resolution) = best.at.branch.clone().ok_or_else(none)?;
+        full.attended.tell(Stage::Polish, 2, 3);
         let finer = (full.model.effort.elements as f64 * resolution.factor()).ceil();
-        if resolution.is_enough() || last || full.model.effort.elements as f64 >= FINE.1 {
+        if resolution.is_enough()
+            || last
+            || attended.is_stopped()
+            || full.model.effort.elements as f64 >= FINE.1
+        {
             let resolved = resolution.is_enough();
             return Ok(Polished { best, residuals, branch, resolved, evaluations });
         }
@@ -386,17 +440,6 @@ fn polish(full: &mut Objective<'_>, x: &DVector<f64>) -> Result<Polished, FitErr
         x = best.x;
     }
     Err(FitError::NoStart)
-}
-
-/// Evaluations of the descents from the grid: of all, and of those that go on.
-const FIRST: usize = 8;
-/// The same.
-const SECOND: usize = 24;
-
-/// Descends on a coarse mesh and the thinned curve.
-fn coarse(thin: &mut Objective<'_>, x: &DVector<f64>, evaluations: usize) -> Option<Minimum> {
-    thin.model.effort.elements = elements(&thin.parameters(x), COARSE, 1.0);
-    descend(thin, x, None, Limits { evaluations, tolerance: 2e-2, damping: CAREFUL })
 }
 
 /// Leaves out the samples beside jumps, and those beyond the end of a stretch: there the model's slope is

@@ -8,11 +8,15 @@
 //! logarithm, for positive quantities). `w ≥ 1` is by how much the variance of the data exceeds `σ²`, as
 //! their residuals tell: it weakens what the data say, and not what was known beforehand.
 
+use crate::attend::Attended;
 use crate::data::Curve;
 use crate::error::ModelError;
+use crate::lever::LeverBranch;
 use crate::model::{Model, Prediction};
 use crate::parameters::{Key, Parameters};
+use crate::uncertainty::{Derived, Quantity};
 use nalgebra::{DMatrix, DVector};
+use shell_contact::Resolution;
 
 /// Knowledge of a quantity beforehand.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +33,30 @@ impl Prior {
     /// Centre and standard deviation in the coordinate.
     pub fn in_coordinate(&self) -> (f64, f64) {
         (self.key.coordinate(self.value), self.sd / self.key.slope(self.value))
+    }
+}
+
+/// Knowledge beforehand of what follows from the moduli, such as Young's modulus: normal in its logarithm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DerivedPrior {
+    /// Of what.
+    pub of: Derived,
+    /// Its value, SI.
+    pub value: f64,
+    /// Standard deviation, SI.
+    pub sd: f64,
+}
+
+impl DerivedPrior {
+    /// By how many standard deviations the parameters miss it.
+    pub fn pull(&self, p: &Parameters) -> f64 {
+        let value = Quantity::Derived(self.of).value(p);
+        (value / self.value).ln() / self.relative_sd()
+    }
+
+    /// Standard deviation of the logarithm.
+    pub fn relative_sd(&self) -> f64 {
+        self.sd / self.value
     }
 }
 
@@ -54,6 +82,10 @@ pub struct Objective<'a> {
     pub free: Vec<Key>,
     /// What is known of it.
     pub priors: Vec<Prior>,
+    /// What is known of what follows from the moduli.
+    pub derived: Vec<DerivedPrior>,
+    /// Who waits.
+    pub attended: Attended<'a>,
     /// Bounds, in the coordinates, of what is free.
     pub bounds: Vec<(f64, f64)>,
     /// Soft-L1 in place of squares.
@@ -73,8 +105,8 @@ pub struct Evaluation {
     pub gradient: DVector<f64>,
     /// The model at every sample.
     pub prediction: Prediction,
-    /// Jacobians of the shell assembled.
-    pub assemblies: usize,
+    /// The branch, and how well its mesh resolves it; none where the sums are those of another one.
+    pub branch: Option<(LeverBranch, Resolution)>,
 }
 
 /// Autocorrelation below which residuals count as white.
@@ -134,13 +166,23 @@ impl Objective<'_> {
     /// When the model has no value there.
     pub fn evaluate(&self, x: &DVector<f64>) -> Result<Evaluation, ModelError> {
         let p = self.parameters(x);
-        let (branch, _) = self.model.branch(self.curve, &p, &self.free)?;
+        let branch = self.model.branch_attended(self.curve, &p, &self.free, self.attended)?;
+        Ok(self.evaluate_on(x, branch))
+    }
+
+    /// The same on a branch that was traced there.
+    pub fn evaluate_on(
+        &self,
+        x: &DVector<f64>,
+        (branch, resolution): (LeverBranch, Resolution),
+    ) -> Evaluation {
+        let p = self.parameters(x);
         let weight = 1.0 / self.noise;
         let prediction = self.model.predict(self.curve, &branch, &p, &self.free, weight);
         let mut evaluation = self.sum(prediction);
-        evaluation.assemblies = branch.nodes().len();
         self.add_priors(x, &mut evaluation);
-        Ok(evaluation)
+        evaluation.branch = Some((branch, resolution));
+        evaluation
     }
 
     /// The sums over the samples.
@@ -174,7 +216,7 @@ impl Objective<'_> {
             }
         }
         let cost = chi2 / self.widened;
-        Evaluation { cost, chi2, normal, gradient, prediction, assemblies: 0 }
+        Evaluation { cost, chi2, normal, gradient, prediction, branch: None }
     }
 
     /// What the residuals at a place say of the noise.
@@ -220,6 +262,13 @@ impl Objective<'_> {
             e.cost += miss * miss;
             e.gradient[k] += miss / sd;
             e.normal[(k, k)] += 1.0 / (sd * sd);
+        }
+        for prior in &self.derived {
+            let Some(along) = Quantity::Derived(prior.of).along(&self.free) else { continue };
+            let (miss, sd) = (prior.pull(&self.parameters(x)), prior.relative_sd());
+            e.cost += miss * miss;
+            e.gradient += &along * (miss / sd);
+            e.normal += &along * along.transpose() / (sd * sd);
         }
     }
 }

@@ -5,6 +5,7 @@
 //! branch.
 
 use super::objective::Objective;
+use crate::attend::Stage;
 use crate::data::{Curve, Direction, Segment};
 use crate::parameters::{Key, Parameters};
 
@@ -12,6 +13,9 @@ use crate::parameters::{Key, Parameters};
 const BENDING: [f64; 6] = [3e-6, 2e-5, 1e-4, 6e-4, 3e-3, 1.2e-2];
 /// Film lengths `δ̂_A` of the grid.
 const FILM: [f64; 3] = [0.008, 0.02, 0.045];
+
+/// Starts that are laid on the data a second time.
+pub(super) const AGAIN: usize = 9;
 
 /// What a curve shows without a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -126,8 +130,13 @@ pub fn grid(objective: &Objective<'_>, look: &Look) -> Vec<Start> {
         None => FILM.iter().map(|f| f * radius).collect(),
     };
     let mut starts = Vec::new();
-    for b in bending {
-        for &film in &films {
+    let total = bending.len() * films.len();
+    for (row, b) in bending.into_iter().enumerate() {
+        for (column, &film) in films.iter().enumerate() {
+            objective.attended.tell(Stage::Starts, row * films.len() + column, total);
+            if objective.attended.is_stopped() {
+                break;
+            }
             let mut p = p;
             // k̂_b = k_b/(χR0²) and S² = χ k_b
             let root = b.sqrt() * radius;
@@ -152,74 +161,77 @@ pub fn grid(objective: &Objective<'_>, look: &Look) -> Vec<Start> {
         }
     }
     starts.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    // the branch of one shell serves until the force scale has moved by half: once more, where it may matter
+    for start in starts.iter_mut().take(AGAIN) {
+        if let Some(again) =
+            lay(objective, start.parameters).filter(|again| again.cost < start.cost)
+        {
+            *start = again;
+        }
+    }
+    starts.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     starts
 }
 
 /// Stretches and shifts a branch to lie on the data.
 fn lay(objective: &Objective<'_>, mut p: Parameters) -> Option<Start> {
     let keys = [Key::Chi, Key::Contact, Key::Offset, Key::Tilt];
-    let mut best: Option<Start> = None;
-    // the branch of one shell serves until the force scale has moved by half
-    for _ in 0..2 {
-        let (branch, _) = objective.model.branch(objective.curve, &p, &[]).ok()?;
-        let mut own = objective.clone();
-        own.free = keys.to_vec();
-        own.priors.clear();
-        own.bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); keys.len()];
-        own.robust = true;
-        let free: Vec<usize> =
-            (0..keys.len()).filter(|&k| objective.free.contains(&keys[k])).collect();
-        let mut damping = 1e-2;
-        let evaluate = |p: &Parameters| {
-            let branch = branch.stretched(p)?;
-            let prediction = own.model.predict(own.curve, &branch, p, &keys, 1.0 / own.noise);
-            Some(own.sum(prediction))
-        };
-        let mut at = evaluate(&p)?;
-        for _ in 0..25 {
-            let m = free.len();
-            let mut matrix = nalgebra::DMatrix::zeros(m, m);
-            let mut rhs = nalgebra::DVector::zeros(m);
-            for (i, &a) in free.iter().enumerate() {
-                for (j, &b) in free.iter().enumerate() {
-                    matrix[(i, j)] = at.normal[(a, b)];
-                }
-                matrix[(i, i)] *= 1.0 + damping;
-                rhs[i] = -at.gradient[a];
+    let attended = objective.attended;
+    let (branch, _) = objective.model.branch_attended(objective.curve, &p, &[], attended).ok()?;
+    let mut own = objective.clone();
+    own.free = keys.to_vec();
+    own.priors.clear();
+    own.derived.clear();
+    own.bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); keys.len()];
+    own.robust = true;
+    let free: Vec<usize> = (0..keys.len()).filter(|&k| objective.free.contains(&keys[k])).collect();
+    let mut damping = 1e-2;
+    let evaluate = |p: &Parameters| {
+        let branch = branch.stretched(p)?;
+        let prediction = own.model.predict(own.curve, &branch, p, &keys, 1.0 / own.noise);
+        Some(own.sum(prediction))
+    };
+    let mut at = evaluate(&p)?;
+    for _ in 0..25 {
+        let m = free.len();
+        let mut matrix = nalgebra::DMatrix::zeros(m, m);
+        let mut rhs = nalgebra::DVector::zeros(m);
+        for (i, &a) in free.iter().enumerate() {
+            for (j, &b) in free.iter().enumerate() {
+                matrix[(i, j)] = at.normal[(a, b)];
             }
-            let Some(step) = matrix.lu().solve(&rhs) else { break };
-            let mut next = p;
-            for (i, &a) in free.iter().enumerate() {
-                match keys[a] {
-                    // the scale of the force: both moduli alike, so that the shell's shape stays
-                    Key::Chi => {
-                        // the derivative by ln χ is half of that by ln S where the shape stays
-                        let factor = (0.5 * step[i]).clamp(-0.5, 0.5).exp();
-                        next[Key::Chi] *= factor;
-                        next[Key::Bending] *= factor;
-                        next[Key::Adhesion] *= factor;
-                    }
-                    key => next[key] += step[i],
+            matrix[(i, i)] *= 1.0 + damping;
+            rhs[i] = -at.gradient[a];
+        }
+        let Some(step) = matrix.lu().solve(&rhs) else { break };
+        let mut next = p;
+        for (i, &a) in free.iter().enumerate() {
+            match keys[a] {
+                // the scale of the force: both moduli alike, so that the shell's shape stays
+                Key::Chi => {
+                    // the derivative by ln χ is half of that by ln S where the shape stays
+                    let factor = (0.5 * step[i]).clamp(-0.5, 0.5).exp();
+                    next[Key::Chi] *= factor;
+                    next[Key::Bending] *= factor;
+                    next[Key::Adhesion] *= factor;
                 }
-            }
-            match evaluate(&next) {
-                Some(tried) if tried.cost < at.cost => {
-                    let gain = at.cost - tried.cost;
-                    (p, at) = (next, tried);
-                    damping *= 0.2;
-                    if gain < 1e-3 * at.cost {
-                        break;
-                    }
-                }
-                _ => damping *= 6.0,
-            }
-            if damping > 1e6 {
-                break;
+                key => next[key] += step[i],
             }
         }
-        if best.as_ref().is_none_or(|b| at.cost < b.cost) {
-            best = Some(Start { parameters: p, cost: at.cost });
+        match evaluate(&next) {
+            Some(tried) if tried.cost < at.cost => {
+                let gain = at.cost - tried.cost;
+                (p, at) = (next, tried);
+                damping *= 0.2;
+                if gain < 1e-3 * at.cost {
+                    break;
+                }
+            }
+            _ => damping *= 6.0,
+        }
+        if damping > 1e6 {
+            break;
         }
     }
-    best
+    Some(Start { parameters: p, cost: at.cost })
 }

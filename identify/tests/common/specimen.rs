@@ -68,7 +68,13 @@ impl Specimen {
             law: self.law,
             contacts: 2,
             nominal_spring_constant: nominal,
-            effort: Effort { elements: 160, points: 600, force_error: 1e-3 * self.noise },
+            effort: Effort {
+                elements: 160,
+                points: 600,
+                force_error: 1e-3 * self.noise,
+                work: f64::INFINITY,
+                max_angle: Effort::ANGLE,
+            },
         };
         fill(&mut curve, &model, &truth, self.noise, &mut normal);
         let mut base = Parameters::default();

@@ -1,7 +1,10 @@
 //! Fits as pictures.
 
+mod page;
 mod picture;
 mod smooth;
+
+pub use page::fit_report;
 
 use crate::{PngError, png};
 use study::fit::Outcome;

@@ -8,6 +8,7 @@ mod html;
 mod report;
 mod round;
 
+pub(crate) use html::{STYLE, escaped};
 pub use report::{REPORT, cycle_report, report};
 
 use serde::Serialize;

@@ -1,9 +1,11 @@
 //! The loading device of a contact case, the table `[device]`.
 
 use super::error::Complaint;
-use super::keys::STIFFNESS;
+use super::keys::{POSITIVE, STIFFNESS};
+use super::path::Scale;
 use super::reader::{Reader, Section};
 use crate::closest::closest;
+use crate::units::{Dimension, Quantity};
 
 /// What holds the plates.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -42,27 +44,36 @@ impl DeviceCase {
     }
 }
 
-/// The device of a section whose keys are all known; a grip if it is absent.
-pub(super) fn device(reader: &Reader, section: Section<'_>) -> Option<DeviceCase> {
+/// The device of a section whose keys are all known; a grip if it is absent. A stiffness in quotes is that of one
+/// lever on the whole bubble, and is handed back as it was given.
+pub(super) fn device(
+    reader: &Reader,
+    section: Section<'_>,
+    scale: Scale,
+) -> Option<(DeviceCase, Option<Quantity>)> {
     if !section.exists() {
-        return Some(DeviceCase::Grip);
+        return Some((DeviceCase::Grip, None));
     }
     let Some(node) = section.get("kind") else {
         reader.missing(section, "kind", format!("give one of {}", DeviceCase::NAMES.join(", ")));
         return None;
     };
     let kind = reader.text(section, "kind")?;
-    let stiffness = reader.number(section, STIFFNESS.name, STIFFNESS.range());
     let given = section.get("stiffness");
+    let (stiffness, lever) = match given {
+        Some(node) if node.is_text() => lever(reader, section, scale).unzip(),
+        _ => (reader.number(section, STIFFNESS.name, STIFFNESS.range()), None),
+    };
     let device = match kind {
         "grip" => DeviceCase::Grip,
         "dead-load" => DeviceCase::DeadLoad,
         "cantilever" => {
             if given.is_none() {
-                let hint = "a cantilever needs its stiffness per plate, in sqrt(chi k_b)/R0";
+                let hint = "a cantilever needs its stiffness per plate, in sqrt(chi k_b)/R0; or, with \
+                            [physical], that of one lever on the whole bubble, such as \"0.08 N/m\"";
                 reader.missing(section, "stiffness", hint);
             }
-            return Some(DeviceCase::Cantilever { stiffness: stiffness? });
+            return Some((DeviceCase::Cantilever { stiffness: stiffness? }, lever));
         }
         _ => {
             let suggestion = closest(kind, DeviceCase::NAMES).map(ToString::to_string);
@@ -76,5 +87,33 @@ pub(super) fn device(reader: &Reader, section: Section<'_>) -> Option<DeviceCase
         reader.refuse(section, "stiffness", node, why);
         return None;
     }
-    Some(device)
+    Some((device, None))
+}
+
+/// Two springs of `2 K`, one behind each plate, give way as one lever of stiffness `K` does:
+/// `k_c = 2 K R0/sqrt(chi k_b)`.
+fn lever(reader: &Reader, section: Section<'_>, scale: Scale) -> Option<(f64, Quantity)> {
+    let node = section.get(STIFFNESS.name)?;
+    let given = reader.quantity(section, STIFFNESS.name, Dimension::Tension, POSITIVE)?;
+    match scale {
+        Scale::Known { radius, force } => {
+            let stiffness = 2.0 * given.si * radius / force;
+            if STIFFNESS.range().contains(stiffness) {
+                return Some((stiffness, given));
+            }
+            let why = format!(
+                "this lever makes the dimensionless stiffness {stiffness:?}, which must be {}; check the units",
+                STIFFNESS.range().words
+            );
+            reader.refuse(section, STIFFNESS.name, node, Complaint::Conflict(why));
+        }
+        Scale::Unknown => {}
+        Scale::None => {
+            let why = "a stiffness with a unit needs the shell in physical units, in a table [physical]; with \
+                       [dimensionless] give 2 K R0/sqrt(chi k_b), a number"
+                .to_owned();
+            reader.refuse(section, STIFFNESS.name, node, Complaint::Conflict(why));
+        }
+    }
+    None
 }

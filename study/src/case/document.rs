@@ -41,6 +41,13 @@ pub(crate) struct Node {
     pub value: Value,
 }
 
+impl Node {
+    /// Whether it is a string.
+    pub(crate) fn is_text(&self) -> bool {
+        matches!(self.value, Value::Text(_))
+    }
+}
+
 /// What a value is.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Value {

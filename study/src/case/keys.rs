@@ -2,7 +2,7 @@
 //!
 //! The reader of case files, its messages and `docs/keys.md` are made from these.
 
-use super::{DeviceCase, Law, StabilityCase};
+use super::{DeviceCase, Law, PathQuantity, StabilityCase};
 use crate::units::Dimension;
 use std::fmt::Write as _;
 
@@ -342,6 +342,54 @@ pub(crate) const EIGENVALUES: Key = count(
     Absent::Count(0),
     "Eigenvalues to compute at every point, the most unstable ones",
 );
+/// `path.quantity` of a contact case.
+pub(crate) const PATH_QUANTITY: Key = key(
+    "quantity",
+    Kind::Word(&PathQuantity::NAMES),
+    "",
+    Absent::Word(PathQuantity::NAMES[0]),
+    "What start and end measure: the parameter itself, the plates' separation 2 R0 z0, the approach of one pole \
+     R0 - R0 z0, that of both (total), or the travel of a lever's base (piezo)",
+);
+/// `path.start` of a contact case.
+pub(crate) const CONTACT_PATH_START: Key = Key {
+    unit: "R0, of a dead load sqrt(chi k_b)",
+    default: Required,
+    help: "Where the path starts; with [physical] also a quantity in quotes, such as \"1.7 um\"",
+    ..START
+};
+/// `path.end` of a contact case.
+pub(crate) const CONTACT_PATH_END: Key =
+    Key { name: "end", help: "Where it ends, likewise", ..CONTACT_PATH_START };
+/// The table `[path]` of a contact case.
+pub(crate) const CONTACT_PATH: [Key; 7] = [
+    PATH_QUANTITY,
+    CONTACT_PATH_START,
+    CONTACT_PATH_END,
+    MAX_STEP,
+    MIN_STEP,
+    MAX_POINTS,
+    EIGENVALUES,
+];
+/// `events.knee`.
+pub(crate) const KNEE: Key = key(
+    "knee",
+    Kind::Flag,
+    "",
+    Absent::Flag(false),
+    "Whether a trace looks for the knee, where the slope of the force has fallen to half of its largest since zero \
+     force",
+);
+/// `events.contact`.
+pub(crate) const CONTACT: Key = key(
+    "contact",
+    Kind::Flag,
+    "",
+    Absent::Flag(false),
+    "Whether a trace looks for the contact, where the film at the pole turns from attraction to repulsion",
+);
+/// The table `[events]`.
+pub(crate) const EVENTS: [Key; 2] = [KNEE, CONTACT];
 /// The table `[path]`.
 pub(crate) const PATH: [Key; 6] = [START, END, MAX_STEP, MIN_STEP, MAX_POINTS, EIGENVALUES];
 
@@ -428,8 +476,14 @@ pub(crate) const STIFFNESS: Key = number(
     Other("required by a cantilever, an error else"),
     "Stiffness of a cantilever, per plate",
 );
+/// `device.stiffness` of a contact case.
+pub(crate) const DEVICE_STIFFNESS: Key = Key {
+    help: "Stiffness of a cantilever, per plate; or, with [physical], in quotes that of one lever on the whole \
+           bubble, such as \"0.08 N/m\"",
+    ..STIFFNESS
+};
 /// The table `[device]`.
-pub(crate) const DEVICE: [Key; 2] = [DEVICE_KIND, STIFFNESS];
+pub(crate) const DEVICE: [Key; 2] = [DEVICE_KIND, DEVICE_STIFFNESS];
 
 /// `stability.scan`.
 pub(crate) const SCAN: Key = key(
@@ -458,7 +512,7 @@ pub(crate) const PLATE: [Key; 4] = [ADHESION, FILM, PLATE_DEVICE, STIFFNESS];
 
 /// Every table of a case file with its keys, those of catalogue problems' own parameters left out: these
 /// are in [`super::CatalogueEntry`].
-pub const TABLES: [Keys; 13] = [
+pub const TABLES: [Keys; 15] = [
     Keys { table: "shell", problems: "contact, two-plates, ring-load", keys: &SHELL },
     Keys { table: "dimensionless", problems: "contact", keys: &GROUPS },
     Keys { table: "dimensionless", problems: "two-plates", keys: &GROUPS_WITHOUT_FILM },
@@ -468,7 +522,9 @@ pub const TABLES: [Keys; 13] = [
     Keys { table: "plate.bottom", problems: "two-plates", keys: &PLATE },
     Keys { table: "device", problems: "contact", keys: &DEVICE },
     Keys { table: "mesh", problems: "all with a mesh", keys: &MESH },
-    Keys { table: "path", problems: "all", keys: &PATH },
+    Keys { table: "path", problems: "contact", keys: &CONTACT_PATH },
+    Keys { table: "path", problems: "two-plates, ring-load, catalogue", keys: &PATH },
+    Keys { table: "events", problems: "contact", keys: &EVENTS },
     Keys { table: "diagram", problems: "all", keys: &DIAGRAM },
     Keys { table: "map", problems: "all", keys: &MAP },
     Keys { table: "stability", problems: "contact, two-plates", keys: &STABILITY },

@@ -10,6 +10,7 @@ pub(crate) mod document;
 pub(crate) mod error;
 pub mod keys;
 pub(crate) mod name;
+mod path;
 mod physical;
 pub(crate) mod reader;
 pub(crate) mod resolve;
@@ -27,6 +28,7 @@ pub use device::DeviceCase;
 pub use document::{Origin, Override, shown};
 pub use error::{CaseError, Complaint, LoadError};
 pub use name::plain_name;
+pub use path::{PathEnd, PathQuantity, PhysicalPath};
 pub use physical::{PhysicalCase, Stiffness};
 pub use source::{SHIPPED, SWEEPS, find, load, load_text, parse};
 
@@ -99,6 +101,17 @@ pub struct ContactCase {
     pub mesh: MeshCase,
     /// What holds the plates.
     pub device: DeviceCase,
+    /// Special points that are looked for besides those of every branch.
+    pub events: EventsCase,
+}
+
+/// Special points of a trace that are looked for only where a case asks for them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct EventsCase {
+    /// Where the slope of the force has fallen to half of its initial one.
+    pub knee: bool,
+    /// Where the film's pressure at the pole turns from attraction to repulsion.
+    pub contact: bool,
 }
 
 /// A microbubble from pole to pole between two plates.

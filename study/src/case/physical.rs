@@ -1,6 +1,7 @@
 //! Physical parameters of a contact case, and the dimensionless groups they make.
 
 use super::Groups;
+use super::path::PhysicalPath;
 use crate::units::Quantity;
 
 /// The physical parameters of a contact case, as written and in SI units.
@@ -20,6 +21,10 @@ pub struct PhysicalCase {
     pub surface_tension: Quantity,
     /// Polytropic exponent of the gas.
     pub gas_exponent: f64,
+    /// Stiffness of one lever on the whole bubble, where `device.stiffness` was given with its unit.
+    pub lever: Option<Quantity>,
+    /// The path, where it was given in the words or units of a laboratory.
+    pub path: Option<PhysicalPath>,
 }
 
 /// What the shell resists with.
@@ -48,6 +53,12 @@ impl PhysicalCase {
             Stiffness::Homogeneous { young, thickness } => young.si * thickness.si,
             Stiffness::Moduli { chi, .. } => chi.si,
         }
+    }
+
+    /// `sqrt(chi k_b)`, the unit of dimensionless forces [N].
+    pub fn force_scale(&self, groups: &Groups) -> f64 {
+        let bending = groups.bending * self.chi() * self.radius.si * self.radius.si;
+        (self.chi() * bending).sqrt()
     }
 
     /// The bending modulus k_b [N m].

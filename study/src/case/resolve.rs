@@ -3,13 +3,14 @@
 use super::device;
 use super::document::Table;
 use super::error::{CaseError, Complaint};
-use super::keys::{self, ANY, Key, Kind, POISSON_SKALAK, POSITIVE, Range, names};
+use super::keys::{self, ANY, Key, Kind, POISSON_SKALAK, Range, names};
 use super::name::own_name;
+use super::path::Scale;
 use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
 use super::reader::{Reader, Section};
 use super::stability;
 use super::{
-    CatalogueCase, CatalogueEntry, ContactCase, DeviceCase, DiagramCase, ElementRange, Groups, Law,
+    CatalogueCase, CatalogueEntry, ContactCase, DiagramCase, ElementRange, EventsCase, Groups, Law,
     LoadedCase, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
 };
 use crate::closest::closest;
@@ -20,6 +21,8 @@ const RING_GROUPS: &[&str] = &names(&keys::RING_GROUPS);
 const PHYSICAL: &[&str] = &names(&keys::PHYSICAL);
 const MESH: &[&str] = &names(&keys::MESH);
 const PATH: &[&str] = &names(&keys::PATH);
+const CONTACT_PATH: &[&str] = &names(&keys::CONTACT_PATH);
+const EVENTS: &[&str] = &names(&keys::EVENTS);
 const DIAGRAM: &[&str] = &names(&keys::DIAGRAM);
 const MAP: &[&str] = &names(&keys::MAP);
 const DEVICE: &[&str] = &names(&keys::DEVICE);
@@ -34,7 +37,8 @@ pub(super) const HOMES: &[(&str, &[&str])] = &[
     ("dimensionless", DIMENSIONLESS),
     ("physical", PHYSICAL),
     ("mesh", MESH),
-    ("path", PATH),
+    ("path", CONTACT_PATH),
+    ("events", EVENTS),
     ("diagram", DIAGRAM),
     ("map", MAP),
     ("device", DEVICE),
@@ -149,6 +153,7 @@ impl<'a> Resolver<'a> {
             "map",
             "device",
             "stability",
+            "events",
         ];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
@@ -173,19 +178,43 @@ impl<'a> Resolver<'a> {
             }
         };
         let mesh = self.mesh();
-        let device = device::device(self.reader, self.table("device", DEVICE));
-        let (start, end) = match device {
-            Some(DeviceCase::Grip) => (CONTACT_START, POSITIVE),
-            _ => (ANY, ANY),
+        let scale = match &parameters {
+            Some((groups, Some(physical))) => {
+                Scale::Known { radius: physical.radius.si, force: physical.force_scale(groups) }
+            }
+            _ if physical.exists() => Scale::Unknown,
+            _ => Scale::None,
         };
-        let path = self.path(None, start, end);
-        let problem = match (shell, parameters, mesh, device) {
-            (Some(shell), Some((groups, physical)), Some(mesh), Some(device)) => {
-                Some(ProblemCase::Contact(ContactCase { shell, groups, physical, mesh, device }))
+        let device = device::device(self.reader, self.table("device", DEVICE), scale);
+        let path = self.contact_path(device.as_ref().map(|(device, _)| *device), scale);
+        let events = self.table("events", EVENTS);
+        let knee = self.flag(events, &keys::KNEE);
+        let contact = self.flag(events, &keys::CONTACT);
+        let (path, given) = path.unzip();
+        let problem = match (shell, parameters, mesh, device, knee, contact) {
+            (Some(shell), Some((groups, physical)), Some(mesh), Some(device), Some(k), Some(c)) => {
+                let (device, lever) = device;
+                let physical = physical.map(|physical| {
+                    Box::new(PhysicalCase { lever, path: given.flatten(), ..*physical })
+                });
+                let events = EventsCase { knee: k, contact: c };
+                Some(ProblemCase::Contact(ContactCase {
+                    shell,
+                    groups,
+                    physical,
+                    mesh,
+                    device,
+                    events,
+                }))
             }
             _ => None,
         };
         (problem, path)
+    }
+
+    /// The table `[path]` of a contact case.
+    pub(super) fn contact_path_table(&self) -> Section<'a> {
+        self.table("path", CONTACT_PATH)
     }
 
     fn ring_load(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
@@ -331,6 +360,8 @@ impl<'a> Resolver<'a> {
             film: film?,
             surface_tension: surface_tension?,
             gas_exponent: gas_exponent?,
+            lever: None,
+            path: None,
         };
         let groups = dimensionless_of_physical(&physical, poisson);
         let checks = [
@@ -427,6 +458,16 @@ impl<'a> Resolver<'a> {
         };
         let start = needed("start", start_range, default.map(|(start, _)| start));
         let end = needed("end", end_range, default.map(|(_, end)| end));
+        self.path_between(section, start, end)
+    }
+
+    /// The path between two values of the parameter.
+    pub(super) fn path_between(
+        &self,
+        section: Section<'_>,
+        start: Option<f64>,
+        end: Option<f64>,
+    ) -> Option<PathCase> {
         let max_step = self.number(section, &keys::MAX_STEP);
         let min_step = self.number(section, &keys::MIN_STEP);
         let max_points = self.count(section, &keys::MAX_POINTS);

@@ -2,8 +2,8 @@
 
 use super::two_plates::{DEVICES, EQUATOR};
 use super::{
-    ContactCase, DiagramCase, Groups, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase,
-    ShellCase, StabilityCase, TwoPlatesCase,
+    ContactCase, DiagramCase, EventsCase, Groups, MapCase, MeshCase, PathCase, PathEnd,
+    PhysicalPath, ProblemCase, ResolvedCase, ShellCase, StabilityCase, TwoPlatesCase,
 };
 use super::{Law, PhysicalCase, Stiffness};
 use std::fmt::Write as _;
@@ -40,7 +40,11 @@ impl ResolvedCase {
                 }
             }
         }
-        path(&mut out, &self.path);
+        let given = match &self.problem {
+            ProblemCase::Contact(case) => case.physical.as_ref().and_then(|p| p.path.as_ref()),
+            _ => None,
+        };
+        path(&mut out, &self.path, given);
         diagram(&mut out, &self.diagram);
         map(&mut out, self.map);
         if matches!(self.problem, ProblemCase::Contact(_) | ProblemCase::TwoPlates(_)) {
@@ -68,8 +72,21 @@ fn contact(out: &mut Lines, case: &ContactCase) {
     mesh(out, case.mesh);
     out.table("device");
     out.text("kind", case.device.name());
-    if let Some(stiffness) = case.device.stiffness() {
-        out.number("stiffness", stiffness);
+    let lever = case.physical.as_ref().and_then(|physical| physical.lever.as_ref());
+    match (lever, case.device.stiffness()) {
+        (Some(lever), Some(stiffness)) => {
+            out.line("# of one lever on the whole bubble; per plate, in sqrt(chi k_b)/R0:");
+            out.line(&format!("#   stiffness = {stiffness:?}"));
+            out.text("stiffness", &lever.text);
+        }
+        (None, Some(stiffness)) => out.number("stiffness", stiffness),
+        _ => {}
+    }
+    let EventsCase { knee, contact } = case.events;
+    if knee || contact {
+        out.table("events");
+        out.line(&format!("knee = {knee}"));
+        out.line(&format!("contact = {contact}"));
     }
 }
 
@@ -145,10 +162,26 @@ fn mesh(out: &mut Lines, mesh: MeshCase) {
     }
 }
 
-fn path(out: &mut Lines, path: &PathCase) {
+fn path(out: &mut Lines, path: &PathCase, given: Option<&PhysicalPath>) {
     out.table("path");
-    out.number("start", path.start);
-    out.number("end", path.end);
+    match given {
+        None => {
+            out.number("start", path.start);
+            out.number("end", path.end);
+        }
+        Some(given) => {
+            out.text("quantity", given.quantity.name());
+            for (key, end) in [("start", &given.start), ("end", &given.end)] {
+                match end {
+                    PathEnd::Number(value) => out.number(key, *value),
+                    PathEnd::Quantity(quantity) => out.text(key, &quantity.text),
+                }
+            }
+            out.line("# as the continued parameter:");
+            out.line(&format!("#   start = {:?}", path.start));
+            out.line(&format!("#   end = {:?}", path.end));
+        }
+    }
     if let Some(step) = path.max_step {
         out.number("max_step", step);
     }

@@ -3,6 +3,7 @@
 use super::Outcome;
 use identify::Key;
 use identify::record::{Estimate, Report};
+use identify::uncertainty::verdict::Verdict;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
@@ -65,7 +66,6 @@ fn case_toml(outcome: &Outcome) -> String {
         outcome.best.rows.iter().map(|row| 1.0 - row.approach_one_pole / radius).fold(start, f)
     };
     let (end, start) = (height(f64::min, f64::INFINITY), height(f64::max, 1.05));
-    let lever = 2.0 * p[Key::SpringConstant] * radius / p.force_scale();
     let mut out = String::new();
     let _ = write!(
         out,
@@ -83,7 +83,7 @@ fn case_toml(outcome: &Outcome) -> String {
          \"{:e} Pa\"\nadhesion = \"{:e} N/m\"\nfilm = \"{:e} m\"\nsurface_tension = \"{:e} N/m\"\n\
          gas_exponent = {:?}\n\n[path]\nstart = {start:?}\nend = {end:?}\n\n\
          # under the lever of the measurement, which presses both poles, for \"arclen cycle\":\n\
-         # [device]\n# kind = \"cantilever\"\n# stiffness = {lever:?}\n",
+         # [device]\n# kind = \"cantilever\"\n# stiffness = \"{:e} N/m\"\n",
         p[Key::Chi],
         p[Key::Bending],
         p[Key::Pressure],
@@ -91,12 +91,13 @@ fn case_toml(outcome: &Outcome) -> String {
         p[Key::Film],
         p[Key::SurfaceTension],
         p[Key::GasExponent],
+        p[Key::SpringConstant],
     );
     out
 }
 
 /// A value with a unit that suits it, such as `1.70 GPa`.
-fn readable(value: f64, unit: &str) -> String {
+pub fn readable(value: f64, unit: &str) -> String {
     const PREFIXES: [(f64, &str); 10] = [
         (1e9, "G"),
         (1e6, "M"),
@@ -120,6 +121,30 @@ fn readable(value: f64, unit: &str) -> String {
     format!("{:.4} {prefix}{unit}", value / factor)
 }
 
+/// What is fitted of a report, what follows from it first.
+pub fn fitted(report: &Report) -> Vec<&Estimate> {
+    let fitted = |e: &&Estimate| e.method != "fixed";
+    report.derived.iter().filter(fitted).chain(report.parameters.iter().filter(fitted)).collect()
+}
+
+/// An interval in words.
+pub fn interval(e: &Estimate, ends: [Option<f64>; 2]) -> String {
+    // nothing is known where an end left the numbers of the machine
+    let open = |x: &f64| *x == 0.0 && e.value != 0.0 || !x.is_finite();
+    let end =
+        |x: Option<f64>| x.filter(|x| !open(x)).map_or("open".to_owned(), |x| readable(x, e.unit));
+    format!("{} to {}", end(ends[0]), end(ends[1]))
+}
+
+/// A verdict in words.
+pub fn verdict(e: &Estimate) -> &'static str {
+    match e.verdict {
+        Some(Verdict::Identified) => "identified",
+        Some(Verdict::Weak) => "weak",
+        _ => "not identifiable",
+    }
+}
+
 /// A table of what was found.
 pub fn summary(outcome: &Outcome) -> String {
     let report = &outcome.best.report;
@@ -136,21 +161,8 @@ pub fn summary(outcome: &Outcome) -> String {
         quality.samples
     );
     let _ = writeln!(out, "{:<12} {:>18}  {:<41}  verdict", "", "value", "95 % interval");
-    let fitted = |e: &&Estimate| e.method != "fixed";
-    let mut own: Vec<&Estimate> = report.derived.iter().filter(fitted).collect();
-    own.extend(report.parameters.iter().filter(fitted));
-    for e in own {
-        // nothing is known where an end left the numbers of the machine
-        let open = |x: &f64| *x == 0.0 && e.value != 0.0 || !x.is_finite();
-        let end = |x: Option<f64>| {
-            x.filter(|x| !open(x)).map_or("open".to_owned(), |x| readable(x, e.unit))
-        };
-        let interval = format!("{} to {}", end(e.interval95[0]), end(e.interval95[1]));
-        let verdict = match e.verdict {
-            Some(identify::uncertainty::verdict::Verdict::Identified) => "identified",
-            Some(identify::uncertainty::verdict::Verdict::Weak) => "weak",
-            _ => "not identifiable",
-        };
+    for e in fitted(report) {
+        let (interval, verdict) = (interval(e, e.interval95), verdict(e));
         let value = readable(e.value, e.unit);
         let _ = writeln!(out, "{:<12} {value:>18}  {interval:<41}  {verdict}", e.key);
     }

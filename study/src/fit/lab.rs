@@ -7,7 +7,9 @@ use crate::case::reader::{Reader, Section};
 use crate::case::source;
 use crate::units::{self, Dimension};
 use identify::data::{Direction, Layout};
-use identify::fit::{Setup, objective::Prior};
+use identify::fit::Setup;
+use identify::fit::objective::{DerivedPrior, Prior};
+use identify::uncertainty::{Derived, Quantity};
 use identify::{Key, LawName, Parameters};
 use std::path::Path;
 
@@ -249,7 +251,14 @@ impl Lab {
             free(&mut setup, prior.key);
         }
         for text in wishes.prior {
-            let prior = parse_prior(text)?;
+            let prior = match parse_prior(text)? {
+                Stated::Key(prior) => prior,
+                Stated::Derived(prior) => {
+                    setup.derived.retain(|p| p.of != prior.of);
+                    setup.derived.push(prior);
+                    continue;
+                }
+            };
             setup.base[prior.key] = prior.value;
             setup.priors.retain(|p| p.key != prior.key);
             setup.priors.push(prior);
@@ -295,8 +304,11 @@ impl Lab {
 
     /// How a file is laid out, with what is known of the lever; wrong options are told by [`Lab::setup`].
     pub fn layout(&self, wishes: Wishes<'_>) -> Layout {
-        let mut priors = wishes.prior.iter().filter_map(|text| parse_prior(text).ok());
-        let prior = priors.rfind(|prior| prior.key == Key::SpringConstant);
+        let mut priors = wishes.prior.iter().filter_map(|text| match parse_prior(text) {
+            Ok(Stated::Key(prior)) if prior.key == Key::SpringConstant => Some(prior),
+            _ => None,
+        });
+        let prior = priors.next_back();
         let known = prior.map_or(self.base[Key::SpringConstant], |prior| prior.value);
         Layout { spring_constant: Some(known).filter(|k| k.is_finite()), ..self.layout.clone() }
     }
@@ -331,20 +343,42 @@ fn dimension(key: Key) -> Option<Dimension> {
 }
 
 fn number(flag: &str, key: Key, text: &str) -> Result<f64, String> {
+    number_of(flag, key.name(), dimension(key), text)
+}
+
+fn number_of(
+    flag: &str,
+    name: &str,
+    dimension: Option<Dimension>,
+    text: &str,
+) -> Result<f64, String> {
     let text = text.trim().trim_matches('"');
-    match dimension(key) {
-        Some(dimension) => {
-            units::parse(text, dimension).map(|quantity| quantity.si).map_err(|error| {
-                format!("{flag}: {} = {}: {error}", key.name(), document::shown(text))
+    match dimension {
+        Some(dimension) => units::parse(text, dimension)
+            .map(|quantity| quantity.si)
+            .map_err(|error| format!("{flag}: {name} = {}: {error}", document::shown(text))),
+        None => {
+            text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| {
+                format!("{flag}: {name} = {}: must be a number", document::shown(text))
             })
         }
-        None => text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| {
-            format!("{flag}: {} = {}: must be a number", key.name(), document::shown(text))
-        }),
     }
 }
 
-fn parse_prior(text: &str) -> Result<Prior, String> {
+/// What follows from the moduli and may be known beforehand, with its dimension.
+const DERIVED: [(Derived, Dimension); 3] = [
+    (Derived::Young, Dimension::Pressure),
+    (Derived::Thickness, Dimension::Length),
+    (Derived::ForceScale, Dimension::Force),
+];
+
+/// What `--prior` states.
+enum Stated {
+    Key(Prior),
+    Derived(DerivedPrior),
+}
+
+fn parse_prior(text: &str) -> Result<Stated, String> {
     const FLAG: &str = "--prior";
     let parts = text.split_once('=').and_then(|(k, rest)| Some((k, rest.split_once(':')?)));
     let Some((name, (value, sd))) = parts else {
@@ -353,15 +387,31 @@ fn parse_prior(text: &str) -> Result<Prior, String> {
             document::shown(text)
         ));
     };
-    let key = key(FLAG, name)?;
+    let positive =
+        || format!("{FLAG} {}: value and standard deviation must be positive", name.trim());
+    let bare = name.rsplit_once('.').map_or(name, |(_, bare)| bare).trim();
+    let derived = DERIVED.into_iter().find(|(of, _)| Quantity::Derived(*of).name() == bare);
+    if let Some((of, dimension)) = derived {
+        let number = |text| number_of(FLAG, bare, Some(dimension), text);
+        let (value, sd) = (number(value)?, number(sd)?);
+        if sd <= 0.0 || value <= 0.0 {
+            return Err(positive());
+        }
+        return Ok(Stated::Derived(DerivedPrior { of, value, sd }));
+    }
+    let Some(key) = Key::of(bare) else {
+        let derived = DERIVED.map(|(of, _)| Quantity::Derived(of).name()).join(", ");
+        let known = Key::ALL.map(Key::name).join(", ");
+        return Err(format!(
+            "{FLAG} {}: unknown key; allowed: {derived}, {known}",
+            document::shown(name)
+        ));
+    };
     let (value, sd) = (number(FLAG, key, value)?, number(FLAG, key, sd)?);
     if sd <= 0.0 || key.is_logarithmic() && value <= 0.0 {
-        return Err(format!(
-            "{FLAG} {}: value and standard deviation must be positive",
-            name.trim()
-        ));
+        return Err(positive());
     }
-    Ok(Prior { key, value, sd })
+    Ok(Stated::Key(Prior { key, value, sd }))
 }
 
 fn parse_range(text: &str) -> Result<(f64, f64), String> {

@@ -9,7 +9,7 @@ use identify::data::{jpk, read};
 use identify::fit::Setup;
 use identify::record::Warning;
 use identify::uncertainty::Quantity;
-use identify::{FitError, Identification, LawName, Profiles};
+use identify::{Attended, FitError, Identification, LawName, Profiles, Progress};
 use lab::{Lab, Wishes};
 use std::path::{Path, PathBuf};
 
@@ -43,13 +43,17 @@ pub enum Failure {
     Input(String),
     /// Nothing fits it.
     NotFound(String),
+    /// Stopped before there was anything to keep.
+    Stopped(String),
 }
 
 impl Failure {
     /// What happened.
     pub fn message(&self) -> &str {
         match self {
-            Failure::Input(message) | Failure::NotFound(message) => message,
+            Failure::Input(message) | Failure::NotFound(message) | Failure::Stopped(message) => {
+                message
+            }
         }
     }
 }
@@ -120,14 +124,18 @@ fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     std::fs::read(path).map_err(unreadable)
 }
 
-/// Fits a curve.
+/// Fits a curve; `attended` may stop it, and then has what was found until then.
 pub fn fit_file(
     source: &Source,
     lab: &Lab,
     laws: Laws,
     wishes: Wishes<'_>,
     profiles: &Profiles,
+    attended: Attended<'_>,
 ) -> Result<Outcome, Failure> {
+    if attended.is_stopped() {
+        return Err(Failure::Stopped(format!("{}: {}", source.label(), FitError::Stopped)));
+    }
     let path = source.path.display().to_string();
     let file = source.label();
     let input = |message: String| Failure::Input(message);
@@ -156,9 +164,17 @@ pub fn fit_file(
         },
     };
     let mut found: Vec<(LawName, Setup, Result<Identification, FitError>)> = Vec::new();
-    for law in chosen {
+    let laws = chosen.len() as f64;
+    for (done, law) in chosen.into_iter().enumerate() {
         let setup = lab.setup(law, curve.spring_constant, wishes).map_err(input)?;
-        let fitted = identify::identify(&curve, &setup, profiles);
+        // each law has its share of the progress
+        let tell = |progress: Progress| {
+            if let Some(listener) = attended.listener {
+                listener(Progress { share: (done as f64 + progress.share) / laws, ..progress });
+            }
+        };
+        let own = Attended { listener: Some(&tell), ..attended };
+        let fitted = identify::identify_attended(&curve, &setup, profiles, own);
         found.push((law, setup, fitted));
     }
     let chi2 = |i: &Identification| i.report.quality.chi2_dof;
@@ -175,6 +191,7 @@ pub fn fit_file(
         return Err(input("no law".to_owned()));
     };
     let mut best = best.map_err(|error| match error {
+        FitError::Stopped => Failure::Stopped(format!("{file}: {error}")),
         FitError::NoStart | FitError::Model(_) => Failure::NotFound(format!("{file}: {error}")),
         other => Failure::Input(format!("{file}: {other}")),
     })?;

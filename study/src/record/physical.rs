@@ -1,7 +1,7 @@
 //! A branch in physical units: the same columns, beside the dimensionless ones, which stay as they are.
 
 use super::result::{Cell, Table};
-use crate::case::{ProblemCase, ResolvedCase};
+use crate::case::{PhysicalCase, ProblemCase, ResolvedCase};
 
 /// What one dimensionless unit of a shell is, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,10 +24,9 @@ impl Scales {
         let ProblemCase::Contact(contact) = &case.problem else { return None };
         let physical = contact.physical.as_ref()?;
         let (radius, chi) = (physical.radius.si, physical.chi());
-        let bending = contact.groups.bending * chi * radius * radius;
         Some(Scales {
             length: radius,
-            force: (chi * bending).sqrt(),
+            force: physical.force_scale(&contact.groups),
             pressure: chi / radius,
             energy: chi * radius * radius,
             film_pressure: physical.adhesion.si / physical.film.si,
@@ -121,6 +120,11 @@ pub fn physical_table(case: &ResolvedCase, table: &Table) -> Option<Table> {
         titles.push(format!("{name}_{}", unit.replace('^', "")));
         columns.push(table.numbers(name).into_iter().map(|value| factor * value).collect());
     }
+    for (name, values) in of_the_laboratory(case, &scales, table) {
+        let (unit, size) = units.length;
+        titles.push(format!("{name}_{unit}"));
+        columns.push(values.into_iter().map(|value| value / size).collect());
+    }
     titles.push("event".to_owned());
     let titles: Vec<&str> = titles.iter().map(String::as_str).collect();
     let mut out = Table::with_columns(&titles);
@@ -132,6 +136,34 @@ pub fn physical_table(case: &ResolvedCase, table: &Table) -> Option<Table> {
         out.push(cells);
     }
     Some(out)
+}
+
+/// The lengths that a laboratory names, in m, of a case that speaks of its lever or its path in such words: the
+/// separation of the plates, the approach of one pole and of both, and under a lever the travel of its base.
+fn of_the_laboratory(
+    case: &ResolvedCase,
+    scales: &Scales,
+    table: &Table,
+) -> Vec<(&'static str, Vec<f64>)> {
+    let ProblemCase::Contact(contact) = &case.problem else { return Vec::new() };
+    let spoken = |physical: &PhysicalCase| physical.lever.is_some() || physical.path.is_some();
+    if !contact.physical.as_deref().is_some_and(spoken) {
+        return Vec::new();
+    }
+    let z0 = table.numbers("z0");
+    let of = |f: &dyn Fn(f64) -> f64| z0.iter().map(|z| f(*z) * scales.length).collect();
+    let mut out: Vec<(&'static str, Vec<f64>)> = vec![
+        ("separation", of(&|z| 2.0 * z)),
+        ("approach_one_pole", of(&|z| 1.0 - z)),
+        ("total", of(&|z| 2.0 * (1.0 - z))),
+    ];
+    if let Some(stiffness) = contact.device.stiffness() {
+        let force = table.numbers("force");
+        let piezo =
+            z0.iter().zip(force).map(|(z, f)| 2.0 * scales.length * (1.0 - z + f / stiffness));
+        out.push(("piezo", piezo.collect()));
+    }
+    out
 }
 
 #[cfg(test)]

@@ -5,11 +5,12 @@ use super::resolution::Resolved;
 use super::stability::Stability;
 use super::states::of_contact;
 use super::{Observer, RunError, listen, settings};
-use crate::case::{ContactCase, DeviceCase, Law, ResolvedCase};
+use crate::case::{ContactCase, DeviceCase, EventsCase, Law, ResolvedCase};
 use crate::record::view::{self, Curve, Mark, Profile, Shape};
 use crate::record::{Cell, ContactRow, EventRecord, MaxwellRecord, Pictures, Table, TraceResult};
 use continuation::{Event, Point, Problem, Settings, StopReason, TraceError};
 use shell_contact::device::{MaxwellPoint, StartError, maxwell_points, trace_loaded};
+use shell_contact::landmarks;
 use shell_contact::{ContactBranch, ContactProblem, Device, LoadedProblem};
 use shell_contact::{Dimensionless, Mesh, Shell, trace_contact};
 use std::time::Instant;
@@ -82,7 +83,11 @@ fn traced(
 ) -> Result<Traced, RunError> {
     let clock = Instant::now();
     let problem = shell(case, contact)?;
-    let (branch, maxwell) = follow(case, device(contact), &problem, observer)?;
+    let (mut branch, maxwell) = follow(case, device(contact), &problem, observer)?;
+    let EventsCase { knee, contact: touch } = contact.events;
+    let wanted = landmarks::Wanted { knee, contact: touch };
+    // states of a traced branch are admissible: there is nothing that could be refused
+    let _ = landmarks::locate(&problem, device(contact), &mut branch.branch, wanted);
     Ok(Traced { problem, branch, maxwell, seconds: clock.elapsed().as_secs_f64() })
 }
 
