@@ -93,7 +93,8 @@ fn help_and_version_exit_with_0() {
 #[test]
 fn check_prints_a_case_that_checks() {
     let place = place();
-    let shipped = ["fig06", "fig07", "fig12", "fig16", "cantilever", "polymer", "two-plates"];
+    let shipped =
+        ["fig06", "fig07", "fig12", "fig16", "cantilever", "polymer", "dlvo", "two-plates"];
     for case in shipped.into_iter().chain(["good.toml", "ring-load"]) {
         let output = arclen(place.path(), &["check", case, "--set", "path.max_points=77"]);
         assert_eq!(output.status.code(), Some(0), "{case}: {}", text(&output.stderr));
@@ -107,7 +108,7 @@ fn check_prints_a_case_that_checks() {
 #[test]
 fn list_names_the_shipped_cases() {
     let output = arclen(place().path(), &["list"]);
-    let names = ["fig06", "fig07", "fig12", "fig16", "cantilever", "polymer", "two-plates"];
+    let names = ["fig06", "fig07", "fig12", "fig16", "cantilever", "polymer", "dlvo", "two-plates"];
     for name in names.into_iter().chain(["ring-load", "phase"]) {
         assert!(text(&output.stdout).contains(&format!("\n  {name} ")), "{name}");
     }

@@ -1,124 +1,14 @@
 //! What a disk, a person or a kill does to the files that are kept changes no result.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use serde_json::Value;
+mod support;
+
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
-
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_arclen"));
-    command.args(arguments).current_dir(folder).stdout(Stdio::null());
-    command
-}
-
-fn arclen(folder: &Path, arguments: &[&str]) -> Output {
-    command(folder, arguments).output().unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn files(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let mut files: Vec<PathBuf> = entries.filter(|path| path.is_file()).collect();
-    files.sort();
-    files
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let name = |path: &PathBuf| path.file_name().unwrap().to_str().unwrap().to_owned();
-    files(folder).iter().map(name).collect()
-}
-
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).unwrap();
-    for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {
-        let target = to.join(entry.file_name());
-        if entry.path().is_dir() {
-            copy(&entry.path(), &target);
-        } else {
-            fs::copy(entry.path(), target).unwrap();
-        }
-    }
-}
-
-/// The files of a folder, its JSON without times.
-fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    fn timeless(value: &mut Value) {
-        match value {
-            Value::Object(map) => {
-                map.remove("seconds");
-                map.values_mut().for_each(timeless);
-            }
-            Value::Array(all) => all.iter_mut().for_each(timeless),
-            _ => {}
-        }
-    }
-    let read = |path: PathBuf| {
-        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
-        let mut bytes = fs::read(&path).unwrap();
-        if name.ends_with(".json") {
-            let mut json: Value = serde_json::from_slice(&bytes).unwrap();
-            timeless(&mut json);
-            bytes = json.to_string().into_bytes();
-        }
-        (name, bytes)
-    };
-    files(folder).into_iter().map(read).collect()
-}
-
-#[track_caller]
-fn equal(one: &Path, other: &Path, said: &str) {
-    assert_eq!(names(one), names(other), "{said}");
-    for ((name, a), (_, b)) in contents(one).into_iter().zip(contents(other)) {
-        assert!(a == b, "{name} differs: {said}");
-    }
-}
-
-/// Numbers that look random and are the same every time.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: usize) -> usize {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % limit
-    }
-
-    /// Damages a file in one of the ways in which files are damaged; says how.
-    fn damage(&mut self, path: &Path) -> String {
-        let mut bytes = fs::read(path).unwrap();
-        let length = bytes.len();
-        let how = match self.below(6) {
-            0..=2 => {
-                let (at, bit) = (self.below(length), self.below(8));
-                bytes[at] ^= 1 << bit;
-                format!("bit {bit} of byte {at}")
-            }
-            3 => {
-                let at = self.below(length);
-                bytes.truncate(at);
-                format!("cut at {at}")
-            }
-            4 => {
-                bytes.clear();
-                "empty".to_owned()
-            }
-            _ => {
-                let from = self.below(length);
-                bytes[from..].fill(0);
-                bytes.push(0);
-                format!("zeros from {from}")
-            }
-        };
-        fs::write(path, bytes).unwrap();
-        format!("{}: {how}", path.display())
-    }
-}
+use support::{Random, arclen, command, copy, equal, files, names, stderr};
 
 const SWEEP: &str = "problem = \"enz\"\n[[vary]]\nkey = \"path.max_step\"\nfrom = 0.5\nto = 1.5\n\
                      count = 6\n";

@@ -102,10 +102,8 @@ pub(crate) fn branch(
     let names = || table.columns().iter().filter(numbers);
     let (examined, full) = examined(case, result);
     let elements = match &case.problem {
-        ProblemCase::Contact(contact) => Some(contact.mesh.elements),
-        ProblemCase::TwoPlates(plates) => Some(plates.mesh.elements),
-        ProblemCase::RingLoad(ring) => Some(ring.mesh.elements),
         ProblemCase::Catalogue(problem) => problem.elements,
+        shell => shell.mesh().map(|mesh| mesh.elements),
     };
     let mut stopped = result.stopped_because.to_string();
     if *cut {

@@ -53,14 +53,14 @@ pub(crate) struct Control {
 /// The controls of a case.
 pub(crate) fn controls(case: &ResolvedCase, catalogue: &[CatalogueEntry]) -> Vec<Control> {
     let resolved: toml::Table = toml::from_str(&case.to_toml()).unwrap_or_default();
-    let (name, physical) = match &case.problem {
-        ProblemCase::Contact(contact) => ("contact", contact.physical.is_some()),
-        ProblemCase::TwoPlates(_) => ("two-plates", false),
-        ProblemCase::RingLoad(_) => ("ring-load", false),
-        ProblemCase::Catalogue(problem) => {
-            let entry = catalogue.iter().find(|entry| entry.name == problem.name);
+    let name = case.problem.name();
+    let physical = match &case.problem {
+        ProblemCase::Contact(contact) => contact.physical.is_some(),
+        ProblemCase::Catalogue(_) => {
+            let entry = catalogue.iter().find(|entry| entry.name == name);
             return entry.map_or_else(Vec::new, |entry| of_catalogue(&resolved, entry));
         }
+        _ => false,
     };
     let groups = if physical { "physical" } else { "dimensionless" };
     let tables = [groups, "plate.top", "plate.bottom", "shell", "device", "path"];
@@ -75,8 +75,12 @@ pub(crate) fn controls(case: &ResolvedCase, catalogue: &[CatalogueEntry]) -> Vec
             // a law that has no such constant may be exchanged for one that has
             let absent = (path == "shell.b").then_some(toml::Value::Float(0.5));
             let Some(value) = at(&resolved, &path).cloned().or(absent) else { continue };
-            let fixed =
-                matches!(path.as_str(), "device.kind" | "plate.top.device" | "plate.bottom.device");
+            // another potential or device would need keys that the case does not have
+            let fixed = key.name == "potential"
+                || matches!(
+                    path.as_str(),
+                    "device.kind" | "plate.top.device" | "plate.bottom.device"
+                );
             let offered = table != "path" || matches!(key.name, "start" | "end");
             if offered && !fixed {
                 found.extend(control(&path, key, &value));

@@ -153,12 +153,7 @@ impl Explorer {
     /// What can be moved, and what is known before anything is traced.
     fn case(&self) -> Answer {
         let case = self.bench.case();
-        let problem = match &case.problem {
-            ProblemCase::Contact(_) => "contact",
-            ProblemCase::TwoPlates(_) => "two-plates",
-            ProblemCase::RingLoad(_) => "ring-load",
-            ProblemCase::Catalogue(problem) => &problem.name,
-        };
+        let problem = case.problem.name();
         let entry = self.bench.catalogue().iter().find(|entry| entry.name == problem);
         let physical =
             matches!(&case.problem, ProblemCase::Contact(contact) if contact.physical.is_some());

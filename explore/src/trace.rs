@@ -251,25 +251,17 @@ fn nearest(parameters: impl Iterator<Item = f64>, along: f64) -> usize {
 
 /// Whether there is something to see between what moves and what rests.
 pub(crate) fn settles(case: &ResolvedCase) -> bool {
-    let elements = match &case.problem {
-        ProblemCase::Contact(contact) => contact.mesh.elements,
-        ProblemCase::TwoPlates(plates) => plates.mesh.elements,
-        ProblemCase::RingLoad(_) | ProblemCase::Catalogue(_) => return false,
-    };
-    elements > COARSE && case.stability != StabilityCase::Axisymmetric
+    let elements = case.problem.mesh().map_or(0, |mesh| mesh.elements);
+    case.problem.has_modes() && elements > COARSE && case.stability != StabilityCase::Axisymmetric
 }
 
 /// Fewer elements.
 fn coarsen(case: &mut ResolvedCase, most: usize) {
     case.path.eigenvalues = 0;
-    let mesh = match &mut case.problem {
-        ProblemCase::Contact(contact) => &mut contact.mesh,
-        ProblemCase::TwoPlates(plates) => &mut plates.mesh,
-        ProblemCase::RingLoad(ring) => &mut ring.mesh,
-        // a mesh is part of such a problem
-        ProblemCase::Catalogue(_) => return,
-    };
-    mesh.elements = mesh.elements.min(most);
+    // that of a problem of the catalogue is part of it
+    if let Some(mesh) = case.problem.mesh_mut() {
+        mesh.elements = mesh.elements.min(most);
+    }
 }
 
 #[cfg(test)]

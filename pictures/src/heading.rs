@@ -53,6 +53,7 @@ pub fn titled(title: &str, case: &ResolvedCase) -> String {
             let gap = if values.is_empty() || summary.is_empty() { "" } else { "; " };
             format!("{summary}{gap}{}", values.join(", "))
         }
+        _ => String::new(),
     };
     if more.is_empty() { title.to_owned() } else { format!("{title}\n{more}") }
 }

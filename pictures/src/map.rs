@@ -76,7 +76,7 @@ fn value(case: &ResolvedCase, key: &str) -> Option<f64> {
             _ => None,
         },
         ProblemCase::Catalogue(problem) => problem.parameters.get(key).copied(),
-        ProblemCase::TwoPlates(_) => None,
+        _ => None,
     }
 }
 

@@ -69,12 +69,7 @@ impl RawCase {
     /// The word of `problem` in its file, or the name of a problem of the catalogue.
     #[getter]
     fn problem(&self) -> &str {
-        match &self.case.problem {
-            ProblemCase::Contact(_) => "contact",
-            ProblemCase::TwoPlates(_) => "two-plates",
-            ProblemCase::RingLoad(_) => "ring-load",
-            ProblemCase::Catalogue(case) => &case.name,
-        }
+        self.case.problem.name()
     }
 
     /// Whether its quantities have units.

@@ -7,7 +7,7 @@
 use crate::bending;
 use crate::contact::{ContactProblem, parameter, with_law};
 use crate::dual::{close, real};
-use crate::film::{FourTwo, Potential};
+use crate::film::{Film, Potential, check};
 use crate::gas::REST_VOLUME;
 use crate::membrane::Membrane;
 use crate::meridian::Mesh;
@@ -19,6 +19,10 @@ use num_dual::{DualNum, HyperDual64};
 pub(crate) type H = HyperDual64;
 
 pub(crate) fn problem(law: Law, gauss: usize) -> ContactProblem {
+    problem_with(law, gauss, Film::FourTwo)
+}
+
+fn problem_with(law: Law, gauss: usize, film: Film) -> ContactProblem {
     let groups = Dimensionless {
         bending: 2e-3,
         pressure: 0.4,
@@ -28,7 +32,7 @@ pub(crate) fn problem(law: Law, gauss: usize) -> ContactProblem {
         gas_exponent: 1.3,
     };
     let mesh = Mesh::graded(14, 2.5).unwrap().with_gauss_points(gauss).unwrap();
-    ContactProblem::new(&Shell { law, poisson: 0.4 }, &groups, mesh).unwrap()
+    ContactProblem::with_potential(&Shell { law, poisson: 0.4 }, &groups, mesh, film).unwrap()
 }
 
 /// A smooth-ish deformed state under the plate.
@@ -60,7 +64,7 @@ pub(crate) fn energy(problem: &ContactProblem, u: &[f64], a: &[f64], b: &[f64], 
             let membrane = with_law!(problem, |law| law.energy(q, hoop * hoop));
             let (ks, kphi) = bending::strains(r1, r2, z1, z2, real(1.0 / sin));
             let bend = kb * bending::energy(ks, kphi, nu);
-            let film = FourTwo.energy(plate - z, adhesion, length);
+            let film = problem.potential.energy(plate - z, adhesion, length);
             total += (membrane + bend) * (weight * sin) + (film + tension) * r * q.sqrt() * weight;
             volume += -(r * r * z1) * (0.5 * weight);
         }
@@ -78,8 +82,8 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 #[test]
 fn residual_hessian_and_parameter_derivatives_agree_with_dual_numbers() {
     for law in [Law::Hooke, Law::MooneyRivlin { b: 0.7 }, Law::Skalak] {
-        for gauss in [4, 6] {
-            let problem = problem(law, gauss);
+        for (film, gauss) in check::every().into_iter().flat_map(|film| [(film, 4), (film, 6)]) {
+            let problem = problem_with(law, gauss, film);
             let n = problem.dim();
             let u = state(n, 0.3, 0.01);
             let p = problem.parameters_at(1.07);
@@ -120,7 +124,11 @@ fn residual_hessian_and_parameter_derivatives_agree_with_dual_numbers() {
 /// Analytic slopes of observables against central differences of the observables themselves.
 #[test]
 fn observable_slopes_agree_with_differences() {
-    let problem = problem(Law::Hooke, 4);
+    check::every().into_iter().for_each(slopes_agree);
+}
+
+fn slopes_agree(film: Film) {
+    let problem = problem_with(Law::Hooke, 4, film);
     let n = problem.dim();
     let u = state(n, 0.3, 0.01);
     let du = state(n, 1.9, 1.0);
@@ -151,7 +159,11 @@ fn observable_slopes_agree_with_differences() {
 /// The gradient is that of the reported energy: U_T = 4π E.
 #[test]
 fn residual_is_the_gradient_of_the_reported_energy() {
-    let problem = problem(Law::MooneyRivlin { b: 1.0 }, 4);
+    check::every().into_iter().for_each(is_gradient);
+}
+
+fn is_gradient(film: Film) {
+    let problem = problem_with(Law::MooneyRivlin { b: 1.0 }, 4, film);
     let n = problem.dim();
     let (u, du) = (state(n, 0.3, 0.01), state(n, 5.0, 1.0));
     let p = problem.parameters_at(1.07);

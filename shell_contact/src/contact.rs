@@ -6,7 +6,7 @@
 
 use crate::density::{self, Coefficients};
 use crate::energy;
-use crate::film::{FourTwo, Potential};
+use crate::film::{Film, Potential};
 use crate::gas::Gas;
 use crate::membrane::Membrane;
 use crate::meridian::Mesh;
@@ -73,7 +73,7 @@ pub(crate) use with_law;
 
 /// A coated bubble between two plates, with the interaction potential `F`.
 #[derive(Debug, Clone)]
-pub struct ContactProblem<F: Potential = FourTwo> {
+pub struct ContactProblem<F: Potential = Film> {
     pub(crate) mesh: Mesh,
     pub(crate) shell: Shell,
     pub(crate) potential: F,
@@ -92,7 +92,7 @@ impl ContactProblem {
         groups: &Dimensionless,
         mesh: Mesh,
     ) -> Result<ContactProblem, ParameterError> {
-        ContactProblem::with_potential(shell, groups, mesh, FourTwo)
+        ContactProblem::with_potential(shell, groups, mesh, Film::FourTwo)
     }
 }
 
@@ -141,6 +141,11 @@ impl<F: Potential> ContactProblem<F> {
         vec![z0, g.adhesion, g.bending, g.pressure, g.film, g.surface_tension]
     }
 
+    /// The potential of the film.
+    pub fn film(&self) -> F {
+        self.potential
+    }
+
     /// The mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
@@ -163,7 +168,7 @@ impl<F: Potential> ContactProblem<F> {
     /// Says what is violated.
     pub fn admissible(&self, u: &[f64], p: &[f64]) -> Result<(), EvalError> {
         let (c, _) = self.coefficients(u, p)?;
-        energy::admissible(&self.mesh, u, c.plate)
+        energy::admissible(&self.mesh, u, self.potential.wall(&c))
     }
 
     /// Everything that is reported of a state.
@@ -234,7 +239,7 @@ impl<F: Potential> ContactProblem<F> {
             *r *= -excess;
         }
         let film = &self.potential;
-        energy::add_gradient(&self.mesh, u, c.plate, r, |at, x| {
+        energy::add_gradient(&self.mesh, u, film.wall(&c), r, |at, x| {
             density::gradient(law, film, &c, at, x)
         })
     }
@@ -297,13 +302,15 @@ impl<F: Potential> Problem for ContactProblem<F> {
             return plate::add_gradient_by(mesh, film, u, &c, variable, out);
         }
         match which {
-            parameter::BENDING => energy::add_gradient(mesh, u, c.plate, out, |at, x| {
+            parameter::BENDING => energy::add_gradient(mesh, u, film.wall(&c), out, |at, x| {
                 density::bending_gradient(c.poisson, at, x)
             }),
-            parameter::SURFACE_TENSION => energy::add_gradient(mesh, u, c.plate, out, |at, x| {
-                density::area_gradient(Scalar::constant(1.0), Lanes::ZERO, at, x)
-            }),
-            _ => energy::admissible(mesh, u, c.plate),
+            parameter::SURFACE_TENSION => {
+                energy::add_gradient(mesh, u, film.wall(&c), out, |at, x| {
+                    density::area_gradient(Scalar::constant(1.0), Lanes::ZERO, at, x)
+                })
+            }
+            _ => energy::admissible(mesh, u, film.wall(&c)),
         }
     }
 
@@ -342,7 +349,7 @@ impl<F: Potential> Problem for ContactProblem<F> {
         dp: f64,
     ) -> Result<Option<f64>, EvalError> {
         let (c, gas) = self.coefficients(u, p)?;
-        let volume_slope = || energy::volume_along(&self.mesh, u, du, c.plate);
+        let volume_slope = || energy::volume_along(&self.mesh, u, du, self.potential.wall(&c));
         match observables::NAMES.get(k).copied() {
             Some("force") => {
                 let (mesh, film) = (&self.mesh, &self.potential);

@@ -13,6 +13,9 @@ impl Scalar for HyperDual64 {
     fn recip(self) -> Self {
         DualNum::recip(&self)
     }
+    fn exp(self) -> Self {
+        DualNum::exp(&self)
+    }
 }
 
 pub(crate) fn real(value: f64) -> HyperDual64 {

@@ -12,7 +12,7 @@
 //! bounded by bisection, with `max z ≤ max(z_a, z_b) + h²/8 max|z''|`.
 
 use crate::density::{self, Coefficients, Gradient, Hessian, Parts, Site};
-use crate::film::Potential;
+use crate::film::{Potential, Wall};
 use crate::half::HalfMeridian;
 use crate::membrane::Membrane;
 use crate::meridian::{Cell, Local, Place};
@@ -23,7 +23,6 @@ use continuation::linalg::SymmetricBand;
 /// Least squared meridional stretch: below it the meridian has a cusp.
 const LEAST_SQUARED_STRETCH: f64 = 1e-8;
 
-const THROUGH_THE_PLATE: &str = "the shell touches or passes the plate: film height not positive";
 const DIMPLES_MEET: &str = "the dimples meet: the shell crosses its mirror image";
 const INSIDE_OUT: &str = "the shell crosses its axis: radius not positive";
 const CUSP: &str = "the meridian has a cusp: squared stretch vanishes";
@@ -105,36 +104,46 @@ pub(crate) fn check_volume(volume: f64, x: &[f64]) -> Result<f64, EvalError> {
     }
 }
 
-/// Whether the shell stays on its side of plate, axis and equator; a fraction of an assembly.
+/// Whether the shell stays on its side of wall, axis and equator; a fraction of an assembly.
 ///
 /// # Errors
 /// Says what is violated, at which Gauss point.
-pub fn admissible(mesh: &impl HalfMeridian, x: &[f64], plate: f64) -> Result<(), EvalError> {
+pub fn admissible(
+    mesh: &impl HalfMeridian,
+    x: &[f64],
+    wall: impl Into<Wall>,
+) -> Result<(), EvalError> {
     volume(mesh, x)?;
-    is_clear(mesh, x, plate)
+    is_clear(mesh, x, wall)
 }
 
 /// [`admissible`] of one of two halves, whose volume may have any sign.
-pub(crate) fn is_clear(mesh: &impl HalfMeridian, x: &[f64], plate: f64) -> Result<(), EvalError> {
-    check_pole(mesh, x, plate)?;
+pub(crate) fn is_clear(
+    mesh: &impl HalfMeridian,
+    x: &[f64],
+    wall: impl Into<Wall>,
+) -> Result<(), EvalError> {
+    let wall = wall.into();
+    check_pole(mesh, x, wall)?;
     for e in 0..mesh.elements() {
         let local = mesh.local(x, e);
-        check_gap(mesh, x, e, &local, plate)?;
+        check_gap(mesh, x, e, &local, wall)?;
         for (k, cell) in mesh.cells(e).iter().enumerate() {
-            check_place(mesh, e, k, &cell.place(&local), plate)?;
+            check_place(mesh, e, k, &cell.place(&local), wall)?;
         }
     }
     Ok(())
 }
 
-/// Pole and plate.
-fn check_pole(mesh: &impl HalfMeridian, x: &[f64], plate: f64) -> Result<(), EvalError> {
+/// Pole and wall.
+fn check_pole(mesh: &impl HalfMeridian, x: &[f64], wall: Wall) -> Result<(), EvalError> {
     let z = 1.0 + mesh.displacement_in(x, 0, 0.0)[0].1;
     if z < mesh.floor() {
         return Err(EvalError::Inadmissible { what: DIMPLES_MEET, at: 0, value: z });
     }
-    if z >= plate {
-        return Err(EvalError::Inadmissible { what: THROUGH_THE_PLATE, at: 0, value: plate - z });
+    if z >= wall.height {
+        let value = wall.height - z;
+        return Err(EvalError::Inadmissible { what: wall.what, at: 0, value });
     }
     Ok(())
 }
@@ -145,15 +154,15 @@ fn check_gap(
     x: &[f64],
     e: usize,
     c: &Local,
-    plate: f64,
+    wall: Wall,
 ) -> Result<(), EvalError> {
     // cos S + w, each bounded by its largest coefficient
-    if plate > mesh.cos_knot(e) + c.w_bound() { Ok(()) } else { search_gap(mesh, x, e, plate) }
+    if wall.height > mesh.cos_knot(e) + c.w_bound() { Ok(()) } else { search_gap(mesh, x, e, wall) }
 }
 
-/// Bisection: looks for a point of element `e` at or above the plate until none can be left.
+/// Bisection: looks for a point of element `e` at or above the wall until none can be left.
 #[cold]
-fn search_gap(mesh: &impl HalfMeridian, x: &[f64], e: usize, plate: f64) -> Result<(), EvalError> {
+fn search_gap(mesh: &impl HalfMeridian, x: &[f64], e: usize, wall: Wall) -> Result<(), EvalError> {
     let (start, end) = (mesh.knots().at(e), mesh.knots().at(e + 1));
     let w = |s: f64| mesh.displacement_in(x, e, s);
     let z = |s: f64| s.cos() + w(s)[0].1;
@@ -167,15 +176,12 @@ fn search_gap(mesh: &impl HalfMeridian, x: &[f64], e: usize, plate: f64) -> Resu
         for i in 0..=parts {
             highest = highest.max(z(start + h * f64::from(i)));
         }
-        if highest >= plate {
+        if highest >= wall.height {
             let at = e * mesh.gauss_points();
-            return Err(EvalError::Inadmissible {
-                what: THROUGH_THE_PLATE,
-                at,
-                value: plate - highest,
-            });
+            let value = wall.height - highest;
+            return Err(EvalError::Inadmissible { what: wall.what, at, value });
         }
-        if highest + margin < plate {
+        if highest + margin < wall.height {
             break;
         }
         parts *= 4;
@@ -189,26 +195,26 @@ fn check_place(
     e: usize,
     k: usize,
     p: &Place<Lanes>,
-    plate: f64,
+    wall: Wall,
 ) -> Result<(), EvalError> {
-    let delta = -(p.z[0] - plate);
+    let delta = -(p.z[0] - wall.height);
     let q = p.s[1] * p.s[1] + p.z[1] * p.z[1] - LEAST_SQUARED_STRETCH;
     if delta.min(p.s[0]).min((p.z[0] - mesh.floor()).min(q)).positive() {
         Ok(())
     } else {
-        Err(refuse(mesh, e, k, p, plate))
+        Err(refuse(mesh, e, k, p, wall))
     }
 }
 
 #[cold]
-fn refuse(mesh: &impl HalfMeridian, e: usize, k: usize, p: &Place<Lanes>, plate: f64) -> EvalError {
+fn refuse(mesh: &impl HalfMeridian, e: usize, k: usize, p: &Place<Lanes>, wall: Wall) -> EvalError {
     for lane in 0..WIDTH {
         let at = e * mesh.gauss_points() + (k * WIDTH + lane).min(mesh.gauss_points() - 1);
         let [s, s1, _] = p.s.map(|x| x.0[lane]);
         let [z, z1, _] = p.z.map(|x| x.0[lane]);
         let q = s1 * s1 + z1 * z1;
         let found = [
-            (plate - z, 0.0, THROUGH_THE_PLATE),
+            (wall.height - z, 0.0, wall.what),
             (z, mesh.floor(), DIMPLES_MEET),
             (s, 0.0, INSIDE_OUT),
             (q, LEAST_SQUARED_STRETCH, CUSP),
@@ -250,7 +256,7 @@ pub(crate) fn half_parts<L: Membrane, F: Potential>(
 ) -> Result<Parts<f64>, EvalError> {
     let none = Lanes::ZERO;
     let mut total = Parts { stretching: none, bending: none, film: none, area: none, volume: none };
-    each_cell(mesh, x, c.plate, |cell, place| {
+    each_cell(mesh, x, film.wall(c), |cell, place| {
         let p = density::parts(law, film, c, &cell.site(), place);
         total.stretching = total.stretching + p.stretching;
         total.bending = total.bending + p.bending;
@@ -270,16 +276,16 @@ pub(crate) fn half_parts<L: Membrane, F: Potential>(
 fn each_cell(
     mesh: &impl HalfMeridian,
     x: &[f64],
-    plate: f64,
+    wall: Wall,
     mut visit: impl FnMut(&Cell, &Place<Lanes>),
 ) -> Result<(), EvalError> {
-    check_pole(mesh, x, plate)?;
+    check_pole(mesh, x, wall)?;
     for e in 0..mesh.elements() {
         let local = mesh.local(x, e);
-        check_gap(mesh, x, e, &local, plate)?;
+        check_gap(mesh, x, e, &local, wall)?;
         for (k, cell) in mesh.cells(e).iter().enumerate() {
             let place = cell.place(&local);
-            check_place(mesh, e, k, &place, plate)?;
+            check_place(mesh, e, k, &place, wall)?;
             visit(cell, &place);
         }
     }
@@ -290,11 +296,11 @@ fn each_cell(
 pub(crate) fn integrate(
     mesh: &impl HalfMeridian,
     x: &[f64],
-    plate: f64,
+    wall: impl Into<Wall>,
     f: impl Fn(&Site<Lanes>, &Place<Lanes>) -> Lanes,
 ) -> Result<f64, EvalError> {
     let mut sum = Lanes::ZERO;
-    each_cell(mesh, x, plate, |cell, place| sum = sum + f(&cell.site(), place))?;
+    each_cell(mesh, x, wall.into(), |cell, place| sum = sum + f(&cell.site(), place))?;
     Ok(sum.sum())
 }
 
@@ -303,16 +309,17 @@ pub(crate) fn integrate_along(
     mesh: &impl HalfMeridian,
     x: &[f64],
     dx: &[f64],
-    plate: f64,
+    wall: impl Into<Wall>,
     f: impl Fn(&Site<Lanes>, &Place<Lanes>, &Place<Lanes>) -> Lanes,
 ) -> Result<f64, EvalError> {
+    let wall = wall.into();
     let mut sum = Lanes::ZERO;
     for e in 0..mesh.elements() {
         let (local, along) = (mesh.local(x, e), mesh.local(dx, e));
-        check_gap(mesh, x, e, &local, plate)?;
+        check_gap(mesh, x, e, &local, wall)?;
         for (k, cell) in mesh.cells(e).iter().enumerate() {
             let place = cell.place(&local);
-            check_place(mesh, e, k, &place, plate)?;
+            check_place(mesh, e, k, &place, wall)?;
             sum = sum + f(&cell.site(), &place, &cell.displacement(&along));
         }
     }
@@ -324,9 +331,9 @@ pub(crate) fn volume_along(
     mesh: &impl HalfMeridian,
     x: &[f64],
     dx: &[f64],
-    plate: f64,
+    wall: impl Into<Wall>,
 ) -> Result<f64, EvalError> {
-    integrate_along(mesh, x, dx, plate, |at, x, d| {
+    integrate_along(mesh, x, dx, wall, |at, x, d| {
         let s = x.s[0];
         -(s * (x.z[1] * d.s[0] + s * d.z[1] * 0.5) * at.weight)
     })
@@ -339,18 +346,19 @@ pub(crate) fn volume_along(
 pub fn add_gradient(
     mesh: &impl HalfMeridian,
     x: &[f64],
-    plate: f64,
+    wall: impl Into<Wall>,
     out: &mut [f64],
     f: impl Fn(&Site<Lanes>, &Place<Lanes>) -> Gradient<Lanes>,
 ) -> Result<(), EvalError> {
-    check_pole(mesh, x, plate)?;
+    let wall = wall.into();
+    check_pole(mesh, x, wall)?;
     for e in 0..mesh.elements() {
         let local = mesh.local(x, e);
-        check_gap(mesh, x, e, &local, plate)?;
+        check_gap(mesh, x, e, &local, wall)?;
         let mut element = [0.0; 8];
         for (k, cell) in mesh.cells(e).iter().enumerate() {
             let place = cell.place(&local);
-            check_place(mesh, e, k, &place, plate)?;
+            check_place(mesh, e, k, &place, wall)?;
             sum_vector(cell, &f(&cell.site(), &place), &mut element);
         }
         mesh.scatter(e, &element, out);
@@ -374,17 +382,18 @@ pub fn add_linearisation<L: Membrane, F: Potential>(
     out: &mut [f64],
     hessian: &mut SymmetricBand,
 ) -> Result<(), EvalError> {
-    check_pole(mesh, x, c.plate)?;
+    let wall = film.wall(c);
+    check_pole(mesh, x, wall)?;
     let mut triangle = [[Lanes::ZERO; 8]; 8];
     let mut lanes = (Gradient::zero(), Hessian::zero());
     for e in 0..mesh.elements() {
         let local = mesh.local(x, e);
-        check_gap(mesh, x, e, &local, c.plate)?;
+        check_gap(mesh, x, e, &local, wall)?;
         let mut vector = [0.0; 8];
         let mut matrix = [[0.0; 8]; 8];
         for (k, cell) in mesh.cells(e).iter().enumerate() {
             let place = cell.place(&local);
-            check_place(mesh, e, k, &place, c.plate)?;
+            check_place(mesh, e, k, &place, wall)?;
             lane_density(law, film, c, excess, cell, &place, &mut lanes);
             lane_matrix(cell, &lanes.1, &mut triangle);
             sum_vector(cell, &lanes.0, &mut vector);

@@ -104,6 +104,11 @@ impl<T: Scalar> Scalar for Forward<T> {
         let value = self.value.recip();
         Forward { value, slope: -(self.slope * value * value) }
     }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        let value = self.value.exp();
+        Forward { value, slope: self.slope * value }
+    }
 }
 
 #[cfg(test)]

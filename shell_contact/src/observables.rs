@@ -204,7 +204,7 @@ impl<F: Potential> ContactProblem<F> {
     /// When the state is not admissible.
     pub fn profile(&self, u: &[f64], p: &[f64], samples: usize) -> Result<Profile, EvalError> {
         let (c, _) = self.coefficients(u, p)?;
-        energy::admissible(&self.mesh, u, c.plate)?;
+        energy::admissible(&self.mesh, u, self.potential.wall(&c))?;
         let tensions = |s, phi| with_law!(self, |law| tensions(&law, s, phi));
         Ok(Profile::of(&self.mesh, &self.potential, u, &c, samples, tensions))
     }

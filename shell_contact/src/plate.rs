@@ -33,7 +33,7 @@ pub(crate) fn pull<F: Potential>(
     u: &[f64],
     c: &Coefficients,
 ) -> Result<f64, EvalError> {
-    energy::integrate(half, u, c.plate, |at, x| {
+    energy::integrate(half, u, film.wall(c), |at, x| {
         let a = (x.s[1] * x.s[1] + x.z[1] * x.z[1]).sqrt();
         jet(film, c, x.z[0]).d1 * x.s[0] * a * at.weight
     })
@@ -47,7 +47,7 @@ pub(crate) fn pull_by<F: Potential>(
     c: &Coefficients,
     by: Variable,
 ) -> Result<f64, EvalError> {
-    energy::integrate(half, u, c.plate, |at, x| {
+    energy::integrate(half, u, film.wall(c), |at, x| {
         let a = (x.s[1] * x.s[1] + x.z[1] * x.z[1]).sqrt();
         slope(film, c, x.z[0], by) * x.s[0] * a * at.weight
     })
@@ -62,7 +62,7 @@ pub(crate) fn pull_along<F: Potential>(
     du: &[f64],
     by: Option<(Variable, f64)>,
 ) -> Result<f64, EvalError> {
-    energy::integrate_along(half, u, du, c.plate, |at, x, d| {
+    energy::integrate_along(half, u, du, film.wall(c), |at, x, d| {
         let a = (x.s[1] * x.s[1] + x.z[1] * x.z[1]).sqrt();
         let f = jet(film, c, x.z[0]);
         let stretch = (x.s[1] * d.s[1] + x.z[1] * d.z[1]) / a;
@@ -86,15 +86,15 @@ pub(crate) fn add_gradient_by<F: Potential>(
 ) -> Result<(), EvalError> {
     let gap = |z: Lanes| -(z - c.plate);
     match by {
-        Variable::Height => energy::add_gradient(half, u, c.plate, out, |at, x| {
+        Variable::Height => energy::add_gradient(half, u, film.wall(c), out, |at, x| {
             let f = jet(film, c, x.z[0]);
             density::area_gradient(f.d1, -f.d2, at, x)
         }),
-        Variable::Adhesion => energy::add_gradient(half, u, c.plate, out, |at, x| {
+        Variable::Adhesion => energy::add_gradient(half, u, film.wall(c), out, |at, x| {
             let (w, d1) = film.by_adhesion(gap(x.z[0]), c.adhesion, c.film);
             density::area_gradient(w, -d1, at, x)
         }),
-        Variable::Length => energy::add_gradient(half, u, c.plate, out, |at, x| {
+        Variable::Length => energy::add_gradient(half, u, film.wall(c), out, |at, x| {
             let (w, d1) = film.by_length(gap(x.z[0]), c.adhesion, c.film);
             density::area_gradient(w, -d1, at, x)
         }),

@@ -24,6 +24,8 @@ pub trait Scalar:
     fn sqrt(self) -> Self;
     /// Reciprocal.
     fn recip(self) -> Self;
+    /// Exponential.
+    fn exp(self) -> Self;
     /// Whether it is zero; not needed where a derivative could matter, which is so by default.
     fn is_zero(self) -> bool {
         false
@@ -46,6 +48,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn recip(self) -> f64 {
         1.0 / self
+    }
+    #[inline(always)]
+    fn exp(self) -> f64 {
+        f64::exp(self)
     }
 }
 
@@ -151,6 +157,14 @@ impl Scalar for Lanes {
         let mut out = self.0;
         for x in &mut out {
             *x = 1.0 / *x;
+        }
+        Lanes(out)
+    }
+    #[inline(always)]
+    fn exp(self) -> Lanes {
+        let mut out = self.0;
+        for x in &mut out {
+            *x = x.exp();
         }
         Lanes(out)
     }

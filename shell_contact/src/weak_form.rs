@@ -39,7 +39,7 @@ pub fn balances<F: Potential>(
 ) -> Result<Vec<Balance>, EvalError> {
     let (c, gas) = problem.coefficients(u, p)?;
     let mesh = &problem.mesh;
-    energy::admissible(mesh, u, c.plate)?;
+    energy::admissible(mesh, u, problem.potential.wall(&c))?;
     let excess = gas.excess(energy::volume(mesh, u)?);
     let knots = mesh.knots();
     let n = knots.elements();

@@ -16,6 +16,10 @@ pub enum Dimension {
     Tension,
     /// Newton metres: the bending modulus of a shell.
     Moment,
+    /// Joules: Hamaker's constant.
+    Energy,
+    /// Volts: the potential of a surface.
+    Voltage,
     /// Newtons.
     Force,
     /// Metres per volt: how far a lever's end moves for a volt of the detector.
@@ -31,7 +35,7 @@ enum Factor {
     Times(f64),
 }
 
-use Dimension::{Force, Length, Moment, Pressure, Sensitivity, Tension};
+use Dimension::{Energy, Force, Length, Moment, Pressure, Sensitivity, Tension, Voltage};
 use Factor::{Ten, Times};
 
 /// Every unit that is understood: the normal spelling, its dimension, its factor.
@@ -56,6 +60,11 @@ const UNITS: &[(&str, Dimension, Factor)] = &[
     ("N m", Moment, Ten(0)),
     ("J", Moment, Ten(0)),
     ("aJ", Moment, Ten(-18)),
+    ("J", Energy, Ten(0)),
+    ("aJ", Energy, Ten(-18)),
+    ("zJ", Energy, Ten(-21)),
+    ("V", Voltage, Ten(0)),
+    ("mV", Voltage, Ten(-3)),
     ("N", Force, Ten(0)),
     ("uN", Force, Ten(-6)),
     ("nN", Force, Ten(-9)),
@@ -74,6 +83,8 @@ impl Dimension {
             Pressure => "2.1 GPa",
             Tension => "0.05 N/m",
             Moment => "3e-16 N m",
+            Energy => "5e-21 J",
+            Voltage => "30 mV",
             Force => "50 pN",
             Sensitivity => "60 nm/V",
         }
@@ -94,6 +105,8 @@ impl fmt::Display for Dimension {
             Pressure => "pressure",
             Tension => "tension",
             Moment => "bending moment",
+            Energy => "Hamaker constant",
+            Voltage => "voltage",
             Force => "force",
             Sensitivity => "sensitivity",
         })
@@ -179,7 +192,10 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<Quantity, UnitError> {
         return Err(UnitError::NoUnit { dimension });
     }
     let name = normal(unit);
-    let Some(&(_, actual, factor)) = UNITS.iter().find(|(known, ..)| *known == name) else {
+    // a joule is a unit of more than one dimension
+    let named = || UNITS.iter().filter(|(known, ..)| *known == name);
+    let own = named().find(|(_, actual, _)| *actual == dimension);
+    let Some(&(_, actual, factor)) = own.or_else(|| named().next()) else {
         return Err(UnitError::UnknownUnit { dimension, unit: unit.to_string() });
     };
     if actual != dimension {
@@ -271,6 +287,9 @@ mod tests {
             assert_eq!(si(&format!("3e-16 {unit}"), Moment), 3e-16, "{unit}");
         }
         assert_eq!(si("+.5E2 aJ", Moment), 50e-18);
+        assert_eq!(si("5 zJ", Energy), 5e-21);
+        assert_eq!(si("5e-21 J", Energy), 5e-21);
+        assert_eq!(si("-30 mV", Voltage), -0.03);
         assert_eq!(si("60 nm/V", Sensitivity), 60e-9);
         assert_eq!(si("0.06 nm / mV", Sensitivity), 60e-9);
     }

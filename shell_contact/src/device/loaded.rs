@@ -2,7 +2,7 @@
 
 use super::{Device, DeviceError, Loading};
 use crate::contact::{ContactProblem, parameter};
-use crate::film::{FourTwo, Potential};
+use crate::film::{Film, Potential};
 use crate::observables::{self, Observation};
 use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::{Arrow, SymmetricBand};
@@ -27,7 +27,7 @@ const NAMES: [&str; observables::NAMES.len() + 1] = {
 ///
 /// The metric is that of the shell plus `dz0²`, lengths in `R0`.
 #[derive(Debug, Clone)]
-pub struct LoadedProblem<'c, F: Potential = FourTwo> {
+pub struct LoadedProblem<'c, F: Potential = Film> {
     contact: &'c ContactProblem<F>,
     device: Device,
     parameters: [Parameter; parameter::COUNT],

@@ -40,7 +40,7 @@ impl<F: Potential> ContactProblem<F> {
         let (c, _) = self.coefficients(u, p)?;
         match variable(which) {
             Some(variable) => plate::pull_by(&self.mesh, &self.potential, u, &c, variable),
-            None => energy::admissible(&self.mesh, u, c.plate).map(|()| 0.0),
+            None => energy::admissible(&self.mesh, u, self.potential.wall(&c)).map(|()| 0.0),
         }
     }
 

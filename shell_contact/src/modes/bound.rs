@@ -24,7 +24,7 @@ pub(super) fn largest_wave<L: Membrane, F: Potential>(
     c: &Coefficients,
 ) -> Result<f64, EvalError> {
     let largest = Cell::new(0.0_f64);
-    energy::integrate(mesh, u, c.plate, |at, x| {
+    energy::integrate(mesh, u, film.wall(c), |at, x| {
         let ([s, s1, _], [z, z1, _]) = (x.s, x.z);
         let q = s1 * s1 + z1 * z1;
         let hoop = s * at.csc;

@@ -5,7 +5,7 @@ use super::ends::{Ends, Neutral};
 use super::{AsymmetricModes, Parity, elements};
 use crate::contact::{ContactProblem, with_law};
 use crate::dual::close;
-use crate::film::{FourTwo, Potential};
+use crate::film::{Film, Potential, check};
 use crate::gas::Gas;
 use crate::membrane::Membrane;
 use crate::meridian::Mesh;
@@ -24,8 +24,12 @@ const GROUPS: Dimensionless = Dimensionless {
 };
 
 fn problem(law: Law) -> ContactProblem {
+    problem_with(law, Film::FourTwo)
+}
+
+fn problem_with(law: Law, film: Film) -> ContactProblem {
     let mesh = Mesh::graded(14, 2.5).unwrap();
-    ContactProblem::new(&Shell { law, poisson: 0.4 }, &GROUPS, mesh).unwrap()
+    ContactProblem::with_potential(&Shell { law, poisson: 0.4 }, &GROUPS, mesh, film).unwrap()
 }
 
 fn state(n: usize) -> Vec<f64> {
@@ -129,7 +133,7 @@ fn surface(
                 let bending = 0.5
                     * kb
                     * (k11 * k11 + 2.0 * nu * k11 * k22 + k22 * k22 + 2.0 * (1.0 - nu) * k12 * k12);
-                let film = FourTwo.energy(plate - r[2], GROUPS.adhesion, GROUPS.film);
+                let film = problem.potential.energy(plate - r[2], GROUPS.adhesion, GROUPS.film);
                 energy +=
                     weight * ((membrane + bending) * s.sin() + (film + GROUPS.surface_tension) * j);
                 volume += weight * inner(r, normal) / 3.0;
@@ -141,8 +145,14 @@ fn surface(
 
 #[test]
 fn second_differences_of_the_energy_in_space() {
-    for law in [Law::Hooke, Law::MooneyRivlin { b: 0.7 }, Law::Skalak] {
-        let problem = problem(law);
+    let [_, dlvo] = check::every();
+    for (law, film) in [
+        (Law::Hooke, Film::FourTwo),
+        (Law::MooneyRivlin { b: 0.7 }, Film::FourTwo),
+        (Law::Skalak, Film::FourTwo),
+        (Law::Hooke, dlvo),
+    ] {
+        let problem = problem_with(law, film);
         let u = state(problem.dim());
         let mut modes = AsymmetricModes::new(problem.mesh());
         modes.assemble(&problem, &u, &problem.parameters_at(1.07)).unwrap();

@@ -238,7 +238,7 @@ impl<'a> AsymmetricModes<'a> {
         excess: f64,
         u: &[f64],
     ) -> Result<(), EvalError> {
-        energy::admissible(self.mesh, u, c.plate)?;
+        energy::admissible(self.mesh, u, film.wall(c))?;
         elements::assemble(self.mesh, u, law, film, c, excess, &mut self.elements);
         self.bound = bound::largest_wave(self.mesh, u, law, film, c)?;
         Ok(())

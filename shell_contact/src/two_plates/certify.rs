@@ -10,7 +10,7 @@ use crate::bending;
 use crate::certify::{H, dot, state};
 use crate::contact::with_law;
 use crate::dual::{close, real};
-use crate::film::{FourTwo, Potential};
+use crate::film::{Film, Potential, check};
 use crate::half::HalfMeridian;
 use crate::membrane::Membrane;
 use crate::meridian::Mesh;
@@ -28,6 +28,10 @@ const SUPPORTS: [Support; 3] = [
 ];
 
 fn problem(law: Law) -> TwoPlatesProblem {
+    problem_with(law, (Film::FourTwo, Film::FourTwo))
+}
+
+fn problem_with(law: Law, films: (Film, Film)) -> TwoPlatesProblem {
     let groups = TwoPlatesGroups {
         bending: 2e-3,
         pressure: 0.4,
@@ -37,7 +41,8 @@ fn problem(law: Law) -> TwoPlatesProblem {
         bottom: Plate { adhesion: 5e-3, film: 0.04 },
     };
     let mesh = Mesh::graded(10, 2.5).unwrap();
-    TwoPlatesProblem::new(&Shell { law, poisson: 0.4 }, &groups, mesh).unwrap()
+    let shell = Shell { law, poisson: 0.4 };
+    TwoPlatesProblem::with_potentials(&shell, &groups, mesh, films).unwrap()
 }
 
 /// `(u, w)` upwards and two derivatives in `S` from the upper pole.
@@ -96,7 +101,8 @@ fn energy(problem: &TwoPlatesProblem, u: &[f64], moved: &Moved<'_>) -> H {
                 Side::Bottom => z + moved.plates[1],
             };
             let (adhesion, length) = films[side as usize];
-            let film = FourTwo.energy(gap, adhesion, length);
+            let films = [problem.potentials.0, problem.potentials.1];
+            let film = films[side as usize].energy(gap, adhesion, length);
             total += (membrane + bend) * (weight * sin) + (film + tension) * r * q.sqrt() * weight;
             volume += -(r * r * z1) * (0.5 * weight);
         }
@@ -155,6 +161,20 @@ fn residual_hessian_and_parameter_derivatives_agree_with_dual_numbers() {
         certify(&problem, &u, &p, |a, b, p| {
             energy(&problem, &u, &Moved { a, b, p, plates: [p[0]; 2] })
         });
+    }
+}
+
+#[test]
+fn plates_with_different_potentials_agree_with_dual_numbers() {
+    let [one, other] = check::every();
+    for films in [(one, other), (other, one)] {
+        let problem = problem_with(Law::Hooke, films);
+        let u = state(problem.dim(), 0.3, 0.01);
+        let p = problem.parameters_at(Z0);
+        certify(&problem, &u, &p, |a, b, p| {
+            energy(&problem, &u, &Moved { a, b, p, plates: [p[0]; 2] })
+        });
+        slopes_agree(&problem, &u, &p, [8, 8]);
     }
 }
 

@@ -120,10 +120,10 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         r: &mut [f64],
     ) -> Result<(), EvalError> {
         let ([top, bottom], (upper, lower)) = (self.halves(), &self.potentials);
-        energy::add_gradient(&top, u, above.plate, r, |at, x| {
+        energy::add_gradient(&top, u, upper.wall(above), r, |at, x| {
             density::gradient(law, upper, above, at, x)
         })?;
-        energy::add_gradient(&bottom, u, below.plate, r, |at, x| {
+        energy::add_gradient(&bottom, u, lower.wall(below), r, |at, x| {
             density::gradient(law, lower, below, at, x)
         })
     }
@@ -169,21 +169,22 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         };
         out.iter_mut().for_each(|out| *out *= -by_excess);
         let (halves, (upper, lower)) = (self.halves(), &self.potentials);
+        let walls = self.walls(c);
         for (k, (half, c)) in halves.iter().zip(c).enumerate() {
             match (by[k], which) {
                 (Some(by), _) if k == 0 => plate::add_gradient_by(half, upper, u, c, by, out)?,
                 (Some(by), _) => plate::add_gradient_by(half, lower, u, c, by, out)?,
                 (None, parameter::BENDING) => {
-                    energy::add_gradient(half, u, c.plate, out, |at, x| {
+                    energy::add_gradient(half, u, walls[k], out, |at, x| {
                         density::bending_gradient(c.poisson, at, x)
                     })?;
                 }
                 (None, parameter::SURFACE_TENSION) => {
-                    energy::add_gradient(half, u, c.plate, out, |at, x| {
+                    energy::add_gradient(half, u, walls[k], out, |at, x| {
                         density::area_gradient(Lanes::constant(1.0), Lanes::ZERO, at, x)
                     })?;
                 }
-                (None, _) => energy::is_clear(half, u, c.plate)?,
+                (None, _) => energy::is_clear(half, u, walls[k])?,
             }
         }
         self.check_poles(u)

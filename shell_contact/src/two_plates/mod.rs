@@ -63,7 +63,7 @@ pub use supported::{Support, SupportedProblem};
 
 use crate::density::Coefficients;
 use crate::energy;
-use crate::film::{FourTwo, Potential};
+use crate::film::{Film, Potential, Wall};
 use crate::meridian::{Mesh, add_mass};
 use crate::params::{Dimensionless, ParameterError, Shell};
 use crate::plate::Variable;
@@ -162,7 +162,7 @@ impl TwoPlatesGroups {
 
 /// A coated bubble between two plates at `±z0`, free to move between them.
 #[derive(Debug, Clone)]
-pub struct TwoPlatesProblem<T: Potential = FourTwo, B: Potential = FourTwo> {
+pub struct TwoPlatesProblem<T: Potential = Film, B: Potential = Film> {
     mesh: Mesh,
     pub(crate) shell: Shell,
     pub(crate) potentials: (T, B),
@@ -182,7 +182,7 @@ impl TwoPlatesProblem {
         groups: &TwoPlatesGroups,
         mesh: Mesh,
     ) -> Result<TwoPlatesProblem, ParameterError> {
-        TwoPlatesProblem::with_potentials(shell, groups, mesh, (FourTwo, FourTwo))
+        TwoPlatesProblem::with_potentials(shell, groups, mesh, (Film::FourTwo, Film::FourTwo))
     }
 }
 
@@ -275,10 +275,15 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         c: &[Coefficients; 2],
     ) -> Result<(), EvalError> {
         self.volume(u)?;
-        for (half, c) in self.halves().iter().zip(c) {
-            energy::is_clear(half, u, c.plate)?;
+        for (half, wall) in self.halves().iter().zip(self.walls(c)) {
+            energy::is_clear(half, u, wall)?;
         }
         self.check_poles(u)
+    }
+
+    /// What either half must stay clear of.
+    pub(crate) fn walls(&self, [above, below]: &[Coefficients; 2]) -> [Wall; 2] {
+        [self.potentials.0.wall(above), self.potentials.1.wall(below)]
     }
 
     /// The state whose upper half is that of `top` and whose lower half is the mirror image of that

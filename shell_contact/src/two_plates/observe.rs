@@ -149,8 +149,9 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
             Ok(Some(plate::force_factor(c[0].bending) * slope))
         };
         let volume = || {
-            let above = energy::volume_along(&top, u, du, c[0].plate)?;
-            Ok(above + energy::volume_along(&bottom, u, du, c[1].plate)?)
+            let [wall_above, wall_below] = self.walls(c);
+            let above = energy::volume_along(&top, u, du, wall_above)?;
+            Ok(above + energy::volume_along(&bottom, u, du, wall_below)?)
         };
         let (poles, shift) = ([pole(&top, du), pole(&bottom, du)], equator(&top, du));
         match NAMES.get(k).copied() {
@@ -193,8 +194,9 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         samples: usize,
     ) -> Result<Profile, EvalError> {
         let [top, bottom] = self.halves();
-        energy::is_clear(&top, u, c[0].plate)?;
-        energy::is_clear(&bottom, u, c[1].plate)?;
+        let [wall_above, wall_below] = self.walls(c);
+        energy::is_clear(&top, u, wall_above)?;
+        energy::is_clear(&bottom, u, wall_below)?;
         self.check_poles(u)?;
         let tensions = |s, phi| with_law!(self, |law| tensions(&law, s, phi));
         let mut out = Profile::of(&top, &self.potentials.0, u, &c[0], samples, tensions);

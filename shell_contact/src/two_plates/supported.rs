@@ -11,7 +11,7 @@
 use super::observe::equator;
 use super::{NAMES, TwoPlatesObservation, TwoPlatesProblem, parameter};
 use crate::density::Coefficients;
-use crate::film::{FourTwo, Potential};
+use crate::film::{Film, Potential};
 use crate::gas::Gas;
 use crate::half::HalfMeridian;
 use crate::observables::Profile;
@@ -48,7 +48,7 @@ pub struct Support {
 /// for each of the others. `Λ = (√k_b/2π)(F_top − F_bottom)` at an equilibrium. `p[0]` is `z0`, or
 /// `base` with a spring.
 #[derive(Debug, Clone)]
-pub struct SupportedProblem<'c, T: Potential = FourTwo, B: Potential = FourTwo> {
+pub struct SupportedProblem<'c, T: Potential = Film, B: Potential = Film> {
     shell: &'c TwoPlatesProblem<T, B>,
     support: Support,
     parameters: [Parameter; parameter::COUNT],

@@ -2,7 +2,7 @@
 //!
 //! The reader of case files, its messages and `docs/keys.md` are made from these.
 
-use super::{DeviceCase, Law, PathQuantity, StabilityCase};
+use super::{DeviceCase, Law, PathQuantity, StabilityCase, film, problem};
 use crate::units::Dimension;
 use std::fmt::Write as _;
 
@@ -135,7 +135,21 @@ pub(crate) const fn names<const N: usize>(keys: &[Key; N]) -> [&'static str; N] 
     names
 }
 
-const fn key(
+/// One after the other.
+const fn joined<const A: usize, const B: usize, const N: usize>(
+    first: [Key; A],
+    second: [Key; B],
+) -> [Key; N] {
+    let mut all = [LAW; N];
+    let mut at = 0;
+    while at < N {
+        all[at] = if at < A { first[at] } else { second[at - A] };
+        at += 1;
+    }
+    all
+}
+
+pub(super) const fn key(
     name: &'static str,
     kind: Kind,
     unit: &'static str,
@@ -145,7 +159,7 @@ const fn key(
     Key { name, kind, unit, default, help }
 }
 
-const fn number(
+pub(super) const fn number(
     name: &'static str,
     range: Range,
     unit: &'static str,
@@ -165,7 +179,7 @@ const fn count(
     key(name, Kind::Count { least, most }, "", default, help)
 }
 
-const fn quantity(
+pub(super) const fn quantity(
     name: &'static str,
     dimension: Dimension,
     range: Range,
@@ -233,17 +247,11 @@ pub(crate) const GAS_EXPONENT: Key = number(
     "Polytropic exponent of the gas; 0 is constant pressure",
 );
 /// The table `[dimensionless]` of a contact case.
-pub(crate) const GROUPS: [Key; 6] =
-    [BENDING, PRESSURE, ADHESION, FILM, SURFACE_TENSION, GAS_EXPONENT];
+pub(crate) const GROUPS: [Key; 6 + film::GROUPS.len()] =
+    joined([BENDING, PRESSURE, ADHESION, FILM, SURFACE_TENSION, GAS_EXPONENT], film::GROUPS);
 /// The same between two plates, whose films are their own.
 pub(crate) const GROUPS_WITHOUT_FILM: [Key; 4] = [BENDING, PRESSURE, SURFACE_TENSION, GAS_EXPONENT];
-/// `dimensionless.pressure` under a ring load.
-pub(crate) const RING_PRESSURE: Key = Key { default: Absent::Number(0.0), ..PRESSURE };
-/// `dimensionless.gas_exponent` under a ring load.
-pub(crate) const RING_GAS_EXPONENT: Key = Key { default: Absent::Number(0.0), ..GAS_EXPONENT };
-/// The table `[dimensionless]` under a ring load.
-pub(crate) const RING_GROUPS: [Key; 3] = [BENDING, RING_PRESSURE, RING_GAS_EXPONENT];
-
+const OF_FOUR_TWO: Absent = Other("required by four-two, an error else");
 const MODULI: Absent = Other("young and thickness, or chi and bending");
 /// `physical.radius`.
 pub(crate) const RADIUS: Key =
@@ -270,10 +278,10 @@ pub(crate) const PHYSICAL_PRESSURE: Key =
     quantity("pressure", Dimension::Pressure, NOT_NEGATIVE, Required, PRESSURE.help);
 /// `physical.adhesion`.
 pub(crate) const PHYSICAL_ADHESION: Key =
-    quantity("adhesion", Dimension::Tension, POSITIVE, Required, ADHESION.help);
+    quantity("adhesion", Dimension::Tension, POSITIVE, OF_FOUR_TWO, ADHESION.help);
 /// `physical.film`.
 pub(crate) const PHYSICAL_FILM: Key =
-    quantity("film", Dimension::Length, POSITIVE, Required, FILM.help);
+    quantity("film", Dimension::Length, POSITIVE, OF_FOUR_TWO, FILM.help);
 /// `physical.surface_tension`.
 pub(crate) const PHYSICAL_SURFACE_TENSION: Key = quantity(
     "surface_tension",
@@ -283,18 +291,21 @@ pub(crate) const PHYSICAL_SURFACE_TENSION: Key = quantity(
     SURFACE_TENSION.help,
 );
 /// The table `[physical]`.
-pub(crate) const PHYSICAL: [Key; 10] = [
-    RADIUS,
-    YOUNG,
-    THICKNESS,
-    CHI,
-    PHYSICAL_BENDING,
-    PHYSICAL_PRESSURE,
-    PHYSICAL_ADHESION,
-    PHYSICAL_FILM,
-    PHYSICAL_SURFACE_TENSION,
-    GAS_EXPONENT,
-];
+pub(crate) const PHYSICAL: [Key; 10 + film::PHYSICAL.len()] = joined(
+    [
+        RADIUS,
+        YOUNG,
+        THICKNESS,
+        CHI,
+        PHYSICAL_BENDING,
+        PHYSICAL_PRESSURE,
+        PHYSICAL_ADHESION,
+        PHYSICAL_FILM,
+        PHYSICAL_SURFACE_TENSION,
+        GAS_EXPONENT,
+    ],
+    film::PHYSICAL,
+);
 
 /// `mesh.elements`.
 pub(crate) const ELEMENTS: Key =
@@ -508,7 +519,8 @@ pub(crate) const PLATE_DEVICE: Key = key(
     "What holds the plate; only the upper one may hang on a cantilever",
 );
 /// The tables `[plate.top]` and `[plate.bottom]`.
-pub(crate) const PLATE: [Key; 4] = [ADHESION, FILM, PLATE_DEVICE, STIFFNESS];
+pub(crate) const PLATE: [Key; 4 + film::GROUPS.len()] =
+    joined([ADHESION, FILM, PLATE_DEVICE, STIFFNESS], film::GROUPS);
 
 /// Every table of a case file with its keys, those of catalogue problems' own parameters left out: these
 /// are in [`super::CatalogueEntry`].
@@ -516,7 +528,7 @@ pub const TABLES: [Keys; 15] = [
     Keys { table: "shell", problems: "contact, two-plates, ring-load", keys: &SHELL },
     Keys { table: "dimensionless", problems: "contact", keys: &GROUPS },
     Keys { table: "dimensionless", problems: "two-plates", keys: &GROUPS_WITHOUT_FILM },
-    Keys { table: "dimensionless", problems: "ring-load", keys: &RING_GROUPS },
+    Keys { table: "dimensionless", problems: "ring-load", keys: &problem::ring_load::GROUPS },
     Keys { table: "physical", problems: "contact", keys: &PHYSICAL },
     Keys { table: "plate.top", problems: "two-plates", keys: &PLATE },
     Keys { table: "plate.bottom", problems: "two-plates", keys: &PLATE },

@@ -8,15 +8,16 @@ mod catalogue;
 mod device;
 pub(crate) mod document;
 pub(crate) mod error;
+mod film;
 pub mod keys;
 pub(crate) mod name;
 mod path;
 mod physical;
+mod problem;
 pub(crate) mod reader;
 pub(crate) mod resolve;
 pub(crate) mod source;
 mod stability;
-mod two_plates;
 mod values;
 mod write;
 
@@ -30,8 +31,10 @@ pub use error::{CaseError, Complaint, LoadError};
 pub use name::plain_name;
 pub use path::{PathEnd, PathQuantity, PhysicalPath};
 pub use physical::{PhysicalCase, Stiffness};
+pub use problem::{PlateCase, ProblemCase, RingLoadCase, TwoPlatesCase};
 pub use source::{SHIPPED, SWEEPS, find, load, load_text, parse};
 
+use shell_contact::film::Film;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -75,19 +78,6 @@ impl Default for StabilityCase {
     }
 }
 
-/// What is solved.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ProblemCase {
-    /// A coated microbubble between two plates; the parameter is the plate distance `z0`.
-    Contact(ContactCase),
-    /// The same from pole to pole, between plates of their own.
-    TwoPlates(TwoPlatesCase),
-    /// A shell under a ring load; the parameter is the contact angle `alpha` in degrees.
-    RingLoad(RingLoadCase),
-    /// A problem of the catalogue, by name.
-    Catalogue(CatalogueCase),
-}
-
 /// A microbubble between two plates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactCase {
@@ -112,61 +102,6 @@ pub struct EventsCase {
     pub knee: bool,
     /// Where the film's pressure at the pole turns from attraction to repulsion.
     pub contact: bool,
-}
-
-/// A microbubble from pole to pole between two plates.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TwoPlatesCase {
-    /// The shell's material.
-    pub shell: ShellCase,
-    /// `k_b / (chi R0²)`.
-    pub bending: f64,
-    /// `P_A R0 / chi`.
-    pub pressure: f64,
-    /// `gamma_BW / chi`.
-    pub surface_tension: f64,
-    /// The polytropic exponent of the gas.
-    pub gas_exponent: f64,
-    /// The upper plate and the lower; `None` for one that is not there.
-    pub plates: [Option<PlateCase>; 2],
-    /// Whether the equator is held in the mid-plane.
-    pub held: bool,
-    /// The mesh of either half.
-    pub mesh: MeshCase,
-}
-
-impl TwoPlatesCase {
-    /// Name of the continued parameter: half the distance of the plates, or the base of a spring.
-    pub fn parameter(&self) -> &'static str {
-        let [top, _] = self.plates;
-        if top.is_some_and(|plate| plate.stiffness.is_some()) { "base" } else { "z0" }
-    }
-}
-
-/// One of two plates.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlateCase {
-    /// `w0 / chi`.
-    pub adhesion: f64,
-    /// `delta_A / R0`.
-    pub film: f64,
-    /// `k_c` of the cantilever that it hangs on, in `sqrt(chi k_b)/R0`; rigid without one.
-    pub stiffness: Option<f64>,
-}
-
-/// A shell under a ring load.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RingLoadCase {
-    /// The shell's material.
-    pub shell: ShellCase,
-    /// `k_b / (chi R0²)`.
-    pub bending: f64,
-    /// `P_A R0 / chi`.
-    pub pressure: f64,
-    /// The polytropic exponent of the gas: 0 is constant pressure.
-    pub gas_exponent: f64,
-    /// The mesh.
-    pub mesh: MeshCase,
 }
 
 /// A problem of the catalogue.
@@ -229,6 +164,8 @@ pub struct Groups {
     pub adhesion: f64,
     /// `delta_A / R0`.
     pub film: f64,
+    /// The potential whose depth and length these are.
+    pub potential: Film,
     /// `gamma_BW / chi`.
     pub surface_tension: f64,
     /// The polytropic exponent of the gas.

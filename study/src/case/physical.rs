@@ -3,6 +3,7 @@
 use super::Groups;
 use super::path::PhysicalPath;
 use crate::units::Quantity;
+use shell_contact::film::Film;
 
 /// The physical parameters of a contact case, as written and in SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +18,10 @@ pub struct PhysicalCase {
     pub adhesion: Quantity,
     /// Length scale delta_A of the film.
     pub film: Quantity,
+    /// The potential of the film.
+    pub potential: Film,
+    /// What adhesion and film follow from, as written; empty if they are given themselves.
+    pub forces: Vec<(&'static str, Quantity)>,
     /// Surface tension gamma_BW.
     pub surface_tension: Quantity,
     /// Polytropic exponent of the gas.
@@ -80,6 +85,7 @@ pub(super) fn dimensionless_of_physical(physical: &PhysicalCase, poisson: f64) -
         pressure: physical.pressure.si * radius / chi,
         adhesion: physical.adhesion.si / chi,
         film: physical.film.si / radius,
+        potential: physical.potential,
         surface_tension: physical.surface_tension.si / chi,
         gas_exponent: physical.gas_exponent,
     }

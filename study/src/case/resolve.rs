@@ -7,17 +7,17 @@ use super::keys::{self, ANY, Key, Kind, POISSON_SKALAK, Range, names};
 use super::name::own_name;
 use super::path::Scale;
 use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
+use super::problem::BUILT_IN;
 use super::reader::{Reader, Section};
 use super::stability;
 use super::{
     CatalogueCase, CatalogueEntry, ContactCase, DiagramCase, ElementRange, EventsCase, Groups, Law,
-    LoadedCase, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, RingLoadCase, ShellCase,
+    LoadedCase, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, ShellCase,
 };
 use crate::closest::closest;
 
 const SHELL: &[&str] = &names(&keys::SHELL);
 const DIMENSIONLESS: &[&str] = &names(&keys::GROUPS);
-const RING_GROUPS: &[&str] = &names(&keys::RING_GROUPS);
 const PHYSICAL: &[&str] = &names(&keys::PHYSICAL);
 const MESH: &[&str] = &names(&keys::MESH);
 const PATH: &[&str] = &names(&keys::PATH);
@@ -27,9 +27,6 @@ const DIAGRAM: &[&str] = &names(&keys::DIAGRAM);
 const MAP: &[&str] = &names(&keys::MAP);
 const DEVICE: &[&str] = &names(&keys::DEVICE);
 const STABILITY: &[&str] = &names(&keys::STABILITY);
-
-/// The problems that are no entries of the catalogue.
-pub(super) const BUILT_IN: [&str; 3] = ["contact", "two-plates", "ring-load"];
 
 /// Where a key may be at home, for those that stand in the wrong table.
 pub(super) const HOMES: &[(&str, &[&str])] = &[
@@ -52,9 +49,6 @@ pub(super) const CONTACT_START: Range = Range {
     holds: |x| x > 1.0,
     words: "greater than 1: a contact case starts above the free shell, of radius 1",
 };
-const ANGLE: Range =
-    Range { holds: |x| x > 0.0 && x < 90.0, words: "an angle between 0 and 90 degrees" };
-
 /// Check a tree and fill in the defaults; `name` is the case's name unless it says one itself.
 ///
 /// # Errors
@@ -95,7 +89,8 @@ impl<'a> Resolver<'a> {
             Some(_) => own_name(self.reader, self.root).map(str::to_string),
         };
         let known: Vec<&str> = BUILT_IN
-            .into_iter()
+            .iter()
+            .map(|(name, _)| *name)
             .chain(self.catalogue.iter().map(|entry| entry.name.as_str()))
             .collect();
         if self.root.get("problem").is_none() {
@@ -103,15 +98,13 @@ impl<'a> Resolver<'a> {
             self.reader.missing(self.root, "problem", hint);
         }
         let problem = self.reader.text(self.root, "problem")?;
-        let (problem, path) = match problem {
-            "contact" => self.contact(),
-            "two-plates" => self.two_plates(),
-            "ring-load" => self.ring_load(),
-            other => match self.catalogue.iter().find(|entry| entry.name == other) {
+        let (problem, path) = match BUILT_IN.iter().find(|(own, _)| *own == problem) {
+            Some((_, read)) => read(&mut self),
+            None => match self.catalogue.iter().find(|entry| entry.name == problem) {
                 Some(entry) => self.entry(entry),
                 None => {
                     let node = self.root.get("problem")?;
-                    let suggestion = closest(other, known.iter().copied()).map(str::to_string);
+                    let suggestion = closest(problem, known.iter().copied()).map(str::to_string);
                     let allowed = known.iter().map(ToString::to_string).collect();
                     let why = Complaint::UnknownWord { allowed, suggestion };
                     self.reader.refuse(self.root, "problem", node, why);
@@ -134,13 +127,13 @@ impl<'a> Resolver<'a> {
     }
 
     /// A table whose keys are all known.
-    fn table(&self, name: &'static str, allowed: &[&str]) -> Section<'a> {
+    pub(super) fn table(&self, name: &'static str, allowed: &[&str]) -> Section<'a> {
         let section = self.reader.section(self.root, name);
         self.reader.only(section, allowed, HOMES);
         section
     }
 
-    fn contact(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
+    pub(super) fn contact(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
         let tables = [
             "name",
             "problem",
@@ -215,27 +208,6 @@ impl<'a> Resolver<'a> {
     /// The table `[path]` of a contact case.
     pub(super) fn contact_path_table(&self) -> Section<'a> {
         self.table("path", CONTACT_PATH)
-    }
-
-    fn ring_load(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
-        let tables =
-            ["name", "problem", "shell", "dimensionless", "mesh", "path", "diagram", "map"];
-        self.reader.only(self.root, &tables, HOMES);
-        let shell = self.shell();
-        let groups = self.table("dimensionless", RING_GROUPS);
-        let bending = self.required(groups, &keys::BENDING);
-        let pressure = self.or_default(groups, &keys::RING_PRESSURE);
-        let gas_exponent = self.or_default(groups, &keys::RING_GAS_EXPONENT);
-        let mesh = self.mesh();
-        let path = self.path(None, ANGLE, ANGLE);
-        let problem = match (shell, bending, pressure, gas_exponent, mesh) {
-            (Some(shell), Some(bending), Some(pressure), Some(gas_exponent), Some(mesh)) => {
-                let case = RingLoadCase { shell, bending, pressure, gas_exponent, mesh };
-                Some(ProblemCase::RingLoad(case))
-            }
-            _ => None,
-        };
-        (problem, path)
     }
 
     fn entry(&mut self, entry: &CatalogueEntry) -> (Option<ProblemCase>, Option<PathCase>) {
@@ -326,17 +298,10 @@ impl<'a> Resolver<'a> {
 
     fn groups(&self, section: Section<'_>) -> Option<Groups> {
         let others = self.groups_without_film(section);
-        let adhesion = self.required(section, &keys::ADHESION);
-        let film = self.required(section, &keys::FILM);
+        let film = self.film(section);
         let [bending, pressure, surface_tension, gas_exponent] = others?;
-        Some(Groups {
-            bending,
-            pressure,
-            adhesion: adhesion?,
-            film: film?,
-            surface_tension,
-            gas_exponent,
-        })
+        let (adhesion, film, potential) = film?;
+        Some(Groups { bending, pressure, adhesion, film, potential, surface_tension, gas_exponent })
     }
 
     fn physical(
@@ -348,16 +313,18 @@ impl<'a> Resolver<'a> {
         let radius = needed(&keys::RADIUS);
         let stiffness = self.stiffness(section);
         let pressure = needed(&keys::PHYSICAL_PRESSURE);
-        let adhesion = needed(&keys::PHYSICAL_ADHESION);
-        let film = needed(&keys::PHYSICAL_FILM);
+        let film = self.physical_film(section);
         let surface_tension = needed(&keys::PHYSICAL_SURFACE_TENSION);
         let gas_exponent = self.or_default(section, &keys::GAS_EXPONENT);
+        let film = film?;
         let physical = PhysicalCase {
             radius: radius?,
             stiffness: stiffness?,
             pressure: pressure?,
-            adhesion: adhesion?,
-            film: film?,
+            adhesion: film.adhesion,
+            film: film.film,
+            potential: film.potential,
+            forces: film.forces,
             surface_tension: surface_tension?,
             gas_exponent: gas_exponent?,
             lever: None,

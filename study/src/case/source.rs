@@ -3,7 +3,8 @@
 use super::catalogue::catalogue;
 use super::document::{self, Override};
 use super::name::plain_name;
-use super::resolve::{BUILT_IN, resolve};
+use super::problem::BUILT_IN;
+use super::resolve::resolve;
 use super::{CatalogueEntry, LoadError, LoadedCase};
 use crate::closest::closest;
 use std::fs::File;
@@ -18,6 +19,7 @@ pub const SHIPPED: &[(&str, &str)] = &[
     ("fig16", include_str!("../../cases/fig16.toml")),
     ("cantilever", include_str!("../../cases/cantilever.toml")),
     ("polymer", include_str!("../../cases/polymer.toml")),
+    ("dlvo", include_str!("../../cases/dlvo.toml")),
     ("ring-load", include_str!("../../cases/ring-load.toml")),
     ("two-plates", include_str!("../../cases/two-plates.toml")),
 ];
@@ -63,7 +65,7 @@ pub fn load(
     if let Some((name, text)) = SHIPPED.iter().chain(SWEEPS).find(|(name, _)| *name == word) {
         return load_text(name, name, text, overrides, catalogue);
     }
-    let built_in = BUILT_IN.contains(&word.as_ref());
+    let built_in = BUILT_IN.iter().any(|(name, _)| *name == word);
     if built_in || catalogue.iter().any(|entry| entry.name == word) {
         let text = format!("problem = \"{word}\"\n");
         return load_text(&word, &word, &text, overrides, catalogue);

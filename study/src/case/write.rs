@@ -1,9 +1,9 @@
 //! A resolved case as a case file again: everything written out, nothing left to defaults.
 
-use super::two_plates::{DEVICES, EQUATOR};
+use super::film;
 use super::{
-    ContactCase, DiagramCase, EventsCase, Groups, MapCase, MeshCase, PathCase, PathEnd,
-    PhysicalPath, ProblemCase, ResolvedCase, ShellCase, StabilityCase, TwoPlatesCase,
+    CatalogueCase, ContactCase, DiagramCase, EventsCase, Groups, MapCase, MeshCase, PathCase,
+    PathEnd, PhysicalPath, ProblemCase, ResolvedCase, ShellCase, StabilityCase,
 };
 use super::{Law, PhysicalCase, Stiffness};
 use std::fmt::Write as _;
@@ -14,32 +14,7 @@ impl ResolvedCase {
         let mut out = Lines(String::new());
         out.line("# Resolved case: every default is written out.");
         out.text("name", &self.name);
-        match &self.problem {
-            ProblemCase::Contact(case) => contact(&mut out, case),
-            ProblemCase::TwoPlates(case) => two_plates(&mut out, case),
-            ProblemCase::RingLoad(case) => {
-                out.text("problem", "ring-load");
-                shell(&mut out, case.shell);
-                out.table("dimensionless");
-                out.number("bending", case.bending);
-                out.number("pressure", case.pressure);
-                out.number("gas_exponent", case.gas_exponent);
-                mesh(&mut out, case.mesh);
-            }
-            ProblemCase::Catalogue(case) => {
-                out.text("problem", &case.name);
-                if !case.parameters.is_empty() {
-                    out.table("parameters");
-                    for (name, value) in &case.parameters {
-                        out.number(name, *value);
-                    }
-                }
-                if let Some(elements) = case.elements {
-                    out.table("mesh");
-                    out.count("elements", elements);
-                }
-            }
-        }
+        self.problem.write(&mut out);
         let given = match &self.problem {
             ProblemCase::Contact(case) => case.physical.as_ref().and_then(|p| p.path.as_ref()),
             _ => None,
@@ -47,14 +22,14 @@ impl ResolvedCase {
         path(&mut out, &self.path, given);
         diagram(&mut out, &self.diagram);
         map(&mut out, self.map);
-        if matches!(self.problem, ProblemCase::Contact(_) | ProblemCase::TwoPlates(_)) {
+        if self.problem.has_modes() {
             stability(&mut out, self.stability);
         }
         out.0
     }
 }
 
-fn contact(out: &mut Lines, case: &ContactCase) {
+pub(super) fn contact(out: &mut Lines, case: &ContactCase) {
     out.text("problem", "contact");
     shell(out, case.shell);
     match &case.physical {
@@ -90,29 +65,21 @@ fn contact(out: &mut Lines, case: &ContactCase) {
     }
 }
 
-fn two_plates(out: &mut Lines, case: &TwoPlatesCase) {
-    out.text("problem", "two-plates");
-    out.text("equator", EQUATOR[usize::from(case.held)]);
-    shell(out, case.shell);
-    out.table("dimensionless");
-    out.number("bending", case.bending);
-    out.number("pressure", case.pressure);
-    out.number("surface_tension", case.surface_tension);
-    out.number("gas_exponent", case.gas_exponent);
-    for (name, plate) in ["plate.top", "plate.bottom"].into_iter().zip(case.plates) {
-        let Some(plate) = plate else { continue };
-        out.table(name);
-        out.number("adhesion", plate.adhesion);
-        out.number("film", plate.film);
-        out.text("device", DEVICES[usize::from(plate.stiffness.is_some())]);
-        if let Some(stiffness) = plate.stiffness {
-            out.number("stiffness", stiffness);
+pub(super) fn catalogue(out: &mut Lines, case: &CatalogueCase) {
+    out.text("problem", &case.name);
+    if !case.parameters.is_empty() {
+        out.table("parameters");
+        for (name, value) in &case.parameters {
+            out.number(name, *value);
         }
     }
-    mesh(out, case.mesh);
+    if let Some(elements) = case.elements {
+        out.table("mesh");
+        out.count("elements", elements);
+    }
 }
 
-fn shell(out: &mut Lines, shell: ShellCase) {
+pub(super) fn shell(out: &mut Lines, shell: ShellCase) {
     out.table("shell");
     out.text("law", &shell.law.to_string());
     out.number("poisson", shell.poisson);
@@ -130,8 +97,9 @@ fn groups(out: &mut Lines, prefix: &str, groups: &Groups) {
         ("surface_tension", groups.surface_tension, "gamma_BW / chi"),
         ("gas_exponent", groups.gas_exponent, "polytropic exponent of the gas"),
     ];
-    for (key, value, meaning) in all {
-        out.line(&format!("{prefix}{:<42} # {meaning}", format!("{key} = {value:?}")));
+    let all = all.map(|(key, value, meaning)| (key, format!("{value:?}"), meaning));
+    for (key, value, meaning) in all.into_iter().chain(film::written(&groups.potential)) {
+        out.line(&format!("{prefix}{:<42} # {meaning}", format!("{key} = {value}")));
     }
 }
 
@@ -148,13 +116,20 @@ fn physical(out: &mut Lines, given: &PhysicalCase) {
         }
     }
     out.text("pressure", &given.pressure.text);
-    out.text("adhesion", &given.adhesion.text);
-    out.text("film", &given.film.text);
+    if given.forces.is_empty() {
+        out.text("adhesion", &given.adhesion.text);
+        out.text("film", &given.film.text);
+    } else if let Some((key, value, _)) = film::written(&given.potential).first() {
+        out.line(&format!("{key} = {value}"));
+        for (key, force) in &given.forces {
+            out.text(key, &force.text);
+        }
+    }
     out.text("surface_tension", &given.surface_tension.text);
     out.number("gas_exponent", given.gas_exponent);
 }
 
-fn mesh(out: &mut Lines, mesh: MeshCase) {
+pub(super) fn mesh(out: &mut Lines, mesh: MeshCase) {
     out.table("mesh");
     out.count("elements", mesh.elements);
     if let Some(grading) = mesh.grading {
@@ -233,26 +208,26 @@ fn stability(out: &mut Lines, stability: StabilityCase) {
 }
 
 /// TOML, line by line.
-struct Lines(String);
+pub(super) struct Lines(String);
 
 impl Lines {
-    fn line(&mut self, line: &str) {
+    pub(super) fn line(&mut self, line: &str) {
         let _ = writeln!(self.0, "{line}");
     }
 
-    fn table(&mut self, name: &str) {
+    pub(super) fn table(&mut self, name: &str) {
         self.line(&format!("\n[{name}]"));
     }
 
-    fn text(&mut self, key: &str, value: &str) {
+    pub(super) fn text(&mut self, key: &str, value: &str) {
         self.line(&format!("{} = {}", quoted(key), toml::Value::String(value.to_string())));
     }
 
-    fn number(&mut self, key: &str, value: f64) {
+    pub(super) fn number(&mut self, key: &str, value: f64) {
         self.line(&format!("{} = {value:?}", quoted(key)));
     }
 
-    fn count(&mut self, key: &str, value: usize) {
+    pub(super) fn count(&mut self, key: &str, value: usize) {
         self.line(&format!("{key} = {value}"));
     }
 }

@@ -5,6 +5,7 @@ use crate::case::{ContactCase, Law, ProblemCase, ResolvedCase, Stiffness};
 use identify::plan::{Depth, Experiment, QUANTITIES, plan};
 use identify::{Key, LawName};
 use serde_json::json;
+use shell_contact::film::Film;
 use std::fmt::Write as _;
 
 /// Name of the file.
@@ -61,6 +62,12 @@ fn with_case(lab: &Lab, contact: &ContactCase, name: &str) -> Result<Lab, String
     let Some(physical) = &contact.physical else {
         return Err(format!("{name}: physical: missing; a plan needs the shell in physical units"));
     };
+    if physical.potential != Film::FourTwo {
+        return Err(format!(
+            "{name}: physical.potential: fits and plans know the potential four-two only; a plan \
+             needs adhesion and film"
+        ));
+    }
     let mut lab = lab.clone();
     let poisson = contact.shell.poisson;
     let (chi, bending) = match &physical.stiffness {

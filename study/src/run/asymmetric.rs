@@ -98,10 +98,12 @@ pub(super) fn follow(
     observer: &mut dyn FnMut(DiagramProgress) -> ControlFlow<()>,
 ) -> Result<Asymmetric, RunError> {
     let half = contact::problem(case, contact)?;
-    let problem = TwoPlatesProblem::new(
+    let film = half.film();
+    let problem = TwoPlatesProblem::with_potentials(
         half.shell(),
         &TwoPlatesGroups::equal(half.groups()),
         half.mesh().clone(),
+        (film, film),
     )
     .map_err(|error| RunError::Parameters { case: case.name.clone(), error })?;
     let path = contact::path(case);

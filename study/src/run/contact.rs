@@ -299,7 +299,7 @@ fn build(contact: &ContactCase) -> Result<ContactProblem, shell_contact::Paramet
         Some(ratio) => Mesh::graded(contact.mesh.elements, ratio)?,
         None => Mesh::uniform(contact.mesh.elements)?,
     };
-    ContactProblem::new(&shell, &groups, mesh)
+    ContactProblem::with_potential(&shell, &groups, mesh, g.potential)
 }
 
 /// One point in the contract's columns.

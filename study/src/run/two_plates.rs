@@ -9,6 +9,7 @@ use crate::case::{PlateCase, ResolvedCase, TwoPlatesCase};
 use crate::record::view::{self, Curve, Profile, Shape};
 use crate::record::{Cell, ContactRow, EventRecord, Pictures, Table, TraceResult};
 use continuation::{Branch, EvalError, Point, Tracer};
+use shell_contact::film::Film;
 use shell_contact::modes::WholeShell;
 use shell_contact::two_plates::{
     Plate, Support, SupportedProblem, TwoPlatesGroups, TwoPlatesProblem,
@@ -114,7 +115,8 @@ fn build(case: &TwoPlatesCase) -> Result<TwoPlatesProblem, shell_contact::Parame
         bottom: plate(bottom),
     };
     let mesh = Mesh::graded(case.mesh.elements, case.mesh.grading.unwrap_or(1.0))?;
-    TwoPlatesProblem::new(&shell, &groups, mesh)
+    let [above, below] = case.plates.map(|plate| plate.map_or_else(Film::default, |p| p.potential));
+    TwoPlatesProblem::with_potentials(&shell, &groups, mesh, (above, below))
 }
 
 /// Trace a case.

@@ -101,7 +101,14 @@ impl Checkpoint {
             self.folder.write(&[(CASE.to_owned(), self.fingerprint.clone().into_bytes())])?;
         }
         let mut saved = Saved::default();
-        while let Some((branch, seconds)) = self.read(&name(saved.finished.len()), &mut damaged)? {
+        while let Some((branch, seconds)) =
+            self.read::<(DiagramBranch, f64)>(&name(saved.finished.len()), &mut damaged)?
+        {
+            // a whole file may still be that of another branch
+            if branch.id != saved.finished.len() {
+                set_aside(&self.path.join(name(saved.finished.len())), &mut damaged)?;
+                break;
+            }
             saved.finished.push(branch);
             saved.seconds = seconds;
         }

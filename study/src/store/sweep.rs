@@ -52,6 +52,15 @@ pub enum StoreError {
         /// The first line that differs.
         difference: String,
     },
+    /// A plan that is not that of the cases beside it.
+    #[error(
+        "{}: damaged, or of another sweep than the cases beside it; start the sweep again",
+        .path.display()
+    )]
+    Stray {
+        /// The plan.
+        path: PathBuf,
+    },
     /// A file that cannot be read.
     #[error("{}: cannot be read: {detail}", .path.display())]
     Unreadable {
@@ -181,7 +190,7 @@ impl Store {
             match self.head(case.index)? {
                 Case::Missing => {}
                 Case::Damaged(path) => set_aside(&path, &mut damaged)?,
-                Case::Whole(kept, of) => {
+                Case::Whole(kept, of, _) => {
                     let own = identity(case);
                     if of != own {
                         return Err(foreign(&of, &own));
@@ -210,32 +219,48 @@ impl Store {
     /// # Errors
     /// When they cannot be read.
     pub fn all(&self) -> Result<(Vec<Kept>, Vec<PathBuf>), StoreError> {
-        let count = self.plan.count().unwrap_or(0);
-        let shard = self.plan.shard;
+        let of = sealed::mark(&document(&self.plan)?);
         let (mut all, mut damaged) = (Vec::new(), Vec::new());
-        for case in (0..count).filter(|case| shard.holds(*case)) {
+        for case in self.numbers()? {
             match self.head(case)? {
                 Case::Missing => {}
                 Case::Damaged(path) => damaged.push(path),
-                Case::Whole(kept, _) => all.push(*kept),
+                Case::Whole(kept, _, mark) if mark == of => all.push(*kept),
+                Case::Whole(..) => return Err(StoreError::Stray { path: self.path.join(PLAN) }),
             }
         }
         Ok((all, damaged))
     }
 
+    /// The numbers of the cases that have a file, in order. The plan is not asked: it may be damaged.
+    fn numbers(&self) -> Result<Vec<usize>, StoreError> {
+        let failed = |error: io::Error| unreadable(&self.path, &error);
+        let mut numbers = Vec::new();
+        for entry in fs::read_dir(&self.path).map_err(failed)? {
+            let found = entry.map_err(failed)?.file_name();
+            let number = found.to_str().and_then(|found| {
+                found.strip_prefix("case-")?.strip_suffix(".cbor")?.parse::<usize>().ok()
+            });
+            numbers.extend(number.filter(|case| found.to_str() == Some(&name(*case))));
+        }
+        numbers.sort_unstable();
+        Ok(numbers)
+    }
+
     fn head(&self, case: usize) -> Result<Case, StoreError> {
         let path = self.path.join(name(case));
-        let bytes = match sealed::read(&path).map_err(|error| unreadable(&path, &error))? {
+        let (bytes, mark) = match sealed::read(&path).map_err(|error| unreadable(&path, &error))? {
             Found::Nothing => return Ok(Case::Missing),
             Found::Damaged => return Ok(Case::Damaged(path)),
-            Found::Whole(bytes, _) => bytes,
+            Found::Whole(bytes, mark) => (bytes, mark),
         };
         let head: Result<Head, _> = ciborium::from_reader(&bytes[..]);
         Ok(match head {
-            Ok(Head { case, record, curve, events }) => {
-                Case::Whole(Box::new(Kept { record, curve, events, path }), case)
+            // a whole file may still be that of another case
+            Ok(Head { case: text, record, curve, events }) if record.case == case => {
+                Case::Whole(Box::new(Kept { record, curve, events, path }), text, mark)
             }
-            Err(_) => Case::Damaged(path),
+            _ => Case::Damaged(path),
         })
     }
 
@@ -306,8 +331,8 @@ enum Case {
     Missing,
     /// A file that is not what was written.
     Damaged(PathBuf),
-    /// What is known of it, and what it is recognised by.
-    Whole(Box<Kept>, String),
+    /// What is known of it, what it is recognised by, and the mark of its sweep.
+    Whole(Box<Kept>, String, u64),
 }
 
 fn set_aside(path: &Path, damaged: &mut Vec<PathBuf>) -> Result<(), StoreError> {

@@ -8,9 +8,7 @@ use crate::case::error::{CaseError, Complaint};
 use crate::case::name::{own_name, plain_name};
 use crate::case::reader::{Reader, Section};
 use crate::case::resolve::resolve;
-use crate::case::{
-    CatalogueEntry, LoadError, ProblemCase, ResolvedCase, SWEEPS, load as load_case, source,
-};
+use crate::case::{CatalogueEntry, LoadError, ResolvedCase, SWEEPS, load as load_case, source};
 use crate::closest::closest;
 use std::path::{Path, PathBuf};
 
@@ -224,7 +222,7 @@ fn expand(
         version: env!("CARGO_PKG_VERSION").to_owned(),
         name: name.to_owned(),
         shard,
-        parameter: parameter(&first, catalogue),
+        parameter: first.problem.parameter(catalogue),
         axes,
         base: first.to_toml().lines().filter(|line| !line.is_empty()).map(str::to_owned).collect(),
     };
@@ -234,19 +232,6 @@ fn expand(
 /// The name of a case: that of the sweep with its number.
 fn name_of(sweep: &str, index: usize) -> String {
     format!("{sweep}-{index}")
-}
-
-/// The name of the continued parameter.
-fn parameter(case: &ResolvedCase, catalogue: &[CatalogueEntry]) -> String {
-    match &case.problem {
-        ProblemCase::Contact(_) => "z0".to_owned(),
-        ProblemCase::TwoPlates(plates) => plates.parameter().to_owned(),
-        ProblemCase::RingLoad(_) => "alpha".to_owned(),
-        ProblemCase::Catalogue(problem) => {
-            let entry = catalogue.iter().find(|entry| entry.name == problem.name);
-            entry.map_or_else(|| "p".to_owned(), |entry| entry.parameter.clone())
-        }
-    }
 }
 
 /// Whether a key is right and only its value, in this case, is not.

@@ -1,11 +1,56 @@
 //! A case between two plates of their own: `[plate.top]`, `[plate.bottom]`, `equator`.
 
-use super::document::Value;
-use super::error::Complaint;
-use super::keys::{self, ANY, POSITIVE, names};
-use super::reader::Section;
-use super::resolve::{CONTACT_START, HOMES, Resolver};
-use super::{PathCase, PlateCase, ProblemCase, TwoPlatesCase};
+use super::{ProblemCase, Read};
+use crate::case::document::Value;
+use crate::case::error::Complaint;
+use crate::case::keys::{self, ANY, POSITIVE, names};
+use crate::case::reader::Section;
+use crate::case::resolve::{CONTACT_START, HOMES, Resolver};
+use crate::case::write::{self, Lines};
+use crate::case::{MeshCase, ShellCase, film};
+use shell_contact::film::Film;
+
+/// A microbubble from pole to pole between two plates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TwoPlatesCase {
+    /// The shell's material.
+    pub shell: ShellCase,
+    /// `k_b / (chi R0²)`.
+    pub bending: f64,
+    /// `P_A R0 / chi`.
+    pub pressure: f64,
+    /// `gamma_BW / chi`.
+    pub surface_tension: f64,
+    /// The polytropic exponent of the gas.
+    pub gas_exponent: f64,
+    /// The upper plate and the lower; `None` for one that is not there.
+    pub plates: [Option<PlateCase>; 2],
+    /// Whether the equator is held in the mid-plane.
+    pub held: bool,
+    /// The mesh of either half.
+    pub mesh: MeshCase,
+}
+
+impl TwoPlatesCase {
+    /// Name of the continued parameter: half the distance of the plates, or the base of a spring.
+    pub fn parameter(&self) -> &'static str {
+        let [top, _] = self.plates;
+        if top.is_some_and(|plate| plate.stiffness.is_some()) { "base" } else { "z0" }
+    }
+}
+
+/// One of two plates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlateCase {
+    /// `w0 / chi`.
+    pub adhesion: f64,
+    /// `delta_A / R0`.
+    pub film: f64,
+    /// The potential whose depth and length these are.
+    pub potential: Film,
+    /// `k_c` of the cantilever that it hangs on, in `sqrt(chi k_b)/R0`; rigid without one.
+    pub stiffness: Option<f64>,
+}
 
 /// Keys of the whole shell; those of the films are the plates'.
 const GROUPS: &[&str] = &names(&keys::GROUPS_WITHOUT_FILM);
@@ -15,12 +60,12 @@ const PLATE: &[&str] = &names(&keys::PLATE);
 const TABLES: [(&str, &str); 2] = [("top", "plate.top"), ("bottom", "plate.bottom")];
 
 /// What may be said of the equator.
-pub(super) const EQUATOR: [&str; 2] = ["free", "held"];
+const EQUATOR: [&str; 2] = ["free", "held"];
 /// What may hold a plate.
-pub(super) const DEVICES: [&str; 2] = ["grip", "cantilever"];
+const DEVICES: [&str; 2] = ["grip", "cantilever"];
 
 impl<'a> Resolver<'a> {
-    pub(super) fn two_plates(&mut self) -> (Option<ProblemCase>, Option<PathCase>) {
+    pub(in crate::case) fn two_plates(&mut self) -> Read {
         let tables = [
             "name",
             "problem",
@@ -115,8 +160,7 @@ impl<'a> Resolver<'a> {
     }
 
     fn plate(&self, section: Section<'a>, top: bool) -> Option<PlateCase> {
-        let adhesion = self.required(section, &keys::ADHESION);
-        let film = self.required(section, &keys::FILM);
+        let film = self.film(section);
         let device = match section.get("device") {
             None => Some(DEVICES[0]),
             Some(_) => self.reader.word(section, "device", &DEVICES),
@@ -143,6 +187,33 @@ impl<'a> Resolver<'a> {
             _ => {}
         }
         let stiffness = if cantilever { Some(stiffness?) } else { None };
-        Some(PlateCase { adhesion: adhesion?, film: film?, stiffness })
+        let (adhesion, film, potential) = film?;
+        Some(PlateCase { adhesion, film, potential, stiffness })
     }
+}
+
+/// The case as a case file has it.
+pub(super) fn write(out: &mut Lines, case: &TwoPlatesCase) {
+    out.text("problem", "two-plates");
+    out.text("equator", EQUATOR[usize::from(case.held)]);
+    write::shell(out, case.shell);
+    out.table("dimensionless");
+    out.number("bending", case.bending);
+    out.number("pressure", case.pressure);
+    out.number("surface_tension", case.surface_tension);
+    out.number("gas_exponent", case.gas_exponent);
+    for (name, plate) in ["plate.top", "plate.bottom"].into_iter().zip(case.plates) {
+        let Some(plate) = plate else { continue };
+        out.table(name);
+        out.number("adhesion", plate.adhesion);
+        out.number("film", plate.film);
+        for (key, value, _) in film::written(&plate.potential) {
+            out.line(&format!("{key} = {value}"));
+        }
+        out.text("device", DEVICES[usize::from(plate.stiffness.is_some())]);
+        if let Some(stiffness) = plate.stiffness {
+            out.number("stiffness", stiffness);
+        }
+    }
+    write::mesh(out, case.mesh);
 }
