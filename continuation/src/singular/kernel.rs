@@ -257,6 +257,7 @@ pub(crate) fn find(
     let steering = if k == 1 { Known::Roughly } else { Known::Nothing };
     let mut known = steering.clone();
     let mut moved: Option<Vec<f64>> = None;
+    let mut contracts = false;
     for iteration in 0..MAX_ITERATIONS {
         let mut local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, known)?;
         if let Some(y) = &moved {
@@ -279,12 +280,17 @@ pub(crate) fn find(
         let size = 1.0 + probe.norm(&z) / widest;
         let converged = correction <= CONVERGED * size;
         let rounding = (ROUNDING * size).max(resolution);
-        let stagnant = correction <= rounding && correction > 0.25 * last;
+        // towards a degenerate point corrections shrink too, but never fast
+        let fast = correction <= FAST * last;
+        contracts |= fast && (iteration > 0 || correction <= rounding / FAST);
+        let stagnant = contracts && correction <= rounding && correction > 0.25 * last;
         z.add(1.0, &step);
         if converged || stagnant {
-            return finish(probe, frame, z, amplitude, tangent, correction, &beta);
+            // what corrections that shrink slowly have left to go, with as much again
+            let ratio = (correction / last).min(0.99);
+            let left = if contracts { 1.0 } else { (2.0 * ratio / (1.0 - ratio)).max(1.0) };
+            return finish(probe, frame, z, amplitude, tangent, left * correction, &beta);
         }
-        let fast = correction <= FAST * last;
         if fast && iteration > 0 {
             let radius = probe.norm(&step);
             if is_useless(probe, &z, radius) {
@@ -292,7 +298,12 @@ pub(crate) fn find(
             }
         }
         let settled = k == 1 && (fast && correction <= SETTLED || correction <= ROUNDING);
-        known = if settled { Known::Form(local.form) } else { steering.clone() };
+        known = match steering {
+            _ if settled => Known::Form(local.form),
+            // the function varies on a scale that differences from one side do not meet
+            Known::Roughly if iteration > 1 && !fast => Known::Nothing,
+            _ => steering.clone(),
+        };
         moved = (settled && correction > ROUNDING).then_some(y);
         last = correction;
         // a state without a value is met by a shorter correction

@@ -43,6 +43,8 @@ impl Extended {
 
 /// Step of first differences, in natural amplitudes.
 pub(super) const FIRST: f64 = 1e-3;
+/// The same from one side: a hundredth of the scale on which sharp turns of a branch vary.
+const BESIDE: f64 = 1e-5;
 /// Step of second differences.
 pub(super) const SECOND: f64 = 1e-2;
 
@@ -229,7 +231,8 @@ impl<'a> Probe<'a> {
         self.stencil(z, v, &terms, xs)
     }
 
-    /// The same from one place and the matrix that was assembled last, that at `z`: to about 1e-3.
+    /// The same from one place and the matrix that was assembled last, that at `z`: enough to steer an
+    /// iteration.
     pub(crate) fn second_from_one_side(
         &mut self,
         z: &Extended,
@@ -237,7 +240,7 @@ impl<'a> Probe<'a> {
         amplitude: f64,
         xs: &[&Extended],
     ) -> Result<Vec<Vec<f64>>, EvalError> {
-        let h = FIRST * amplitude;
+        let h = BESIDE * amplitude;
         let mut out: Vec<Vec<f64>> = xs.iter().map(|x| self.without_here(x)).collect();
         self.accumulate(z, v, h, 1.0, xs, &mut out)?;
         out.iter_mut().flatten().for_each(|y| *y /= h);

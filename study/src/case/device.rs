@@ -61,7 +61,7 @@ pub(super) fn device(
     let kind = reader.text(section, "kind")?;
     let given = section.get("stiffness");
     let (stiffness, lever) = match given {
-        Some(node) if node.is_text() => lever(reader, section, scale).unzip(),
+        Some(node) if node.is_quantity() => lever(reader, section, scale).unzip(),
         _ => (reader.number(section, STIFFNESS.name, STIFFNESS.range()), None),
     };
     let device = match kind {

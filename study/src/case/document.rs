@@ -42,9 +42,10 @@ pub(crate) struct Node {
 }
 
 impl Node {
-    /// Whether it is a string.
-    pub(crate) fn is_text(&self) -> bool {
-        matches!(self.value, Value::Text(_))
+    /// Whether it is a string that begins as a number does: a quantity with a unit.
+    pub(crate) fn is_quantity(&self) -> bool {
+        let begins = |c: char| c.is_ascii_digit() || "+-.".contains(c);
+        matches!(&self.value, Value::Text(text) if text.trim_start().starts_with(begins))
     }
 }
 
