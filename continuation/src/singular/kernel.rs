@@ -34,6 +34,8 @@ const ENTRIES: f64 = 2.0 * f64::EPSILON;
 /// any more: what is left of the defect after each corrects the quadratic form.
 const SETTLED: f64 = 2e-2;
 const FAST: f64 = 0.1;
+/// What corrections that never shrank fast may have left to go, in terms of the last one.
+const SLOW: f64 = 16.0;
 
 /// Natural amplitudes that differ by less are one.
 const ALIKE: f64 = 10.0;
@@ -280,15 +282,13 @@ pub(crate) fn find(
         let size = 1.0 + probe.norm(&z) / widest;
         let converged = correction <= CONVERGED * size;
         let rounding = (ROUNDING * size).max(resolution);
-        // towards a degenerate point corrections shrink too, but never fast
+        // towards a degenerate point corrections shrink too, but never fast, nor do they grow
         let fast = correction <= FAST * last;
-        contracts |= fast && (iteration > 0 || correction <= rounding / FAST);
+        contracts |= iteration > 0 && (fast || correction <= rounding && correction >= last);
         let stagnant = contracts && correction <= rounding && correction > 0.25 * last;
         z.add(1.0, &step);
-        if converged || stagnant {
-            // what corrections that shrink slowly have left to go, with as much again
-            let ratio = (correction / last).min(0.99);
-            let left = if contracts { 1.0 } else { (2.0 * ratio / (1.0 - ratio)).max(1.0) };
+        if converged && (iteration > 0 || correction == 0.0) || stagnant {
+            let left = if contracts || correction == 0.0 { 1.0 } else { SLOW };
             return finish(probe, frame, z, amplitude, tangent, left * correction, &beta);
         }
         if fast && iteration > 0 {
