@@ -60,7 +60,7 @@ impl PhysicalCase {
         }
     }
 
-    /// `sqrt(chi k_b)`, the unit of dimensionless forces [N].
+    /// `sqrt(chi k_b)`, the unit of dimensionless forces in N.
     pub fn force_scale(&self, groups: &Groups) -> f64 {
         let bending = groups.bending * self.chi() * self.radius.si * self.radius.si;
         (self.chi() * bending).sqrt()
