@@ -9,10 +9,10 @@ use crate::singular::arbitrary;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProblemError {
-    /// [`Problem::dim`] is zero.
+    /// [`Problem::dim`](crate::Problem::dim) is zero.
     #[error("the problem has no unknowns: its dimension is 0")]
     NoUnknowns,
-    /// [`Problem::new_jacobian`] makes a matrix of another dimension than [`Problem::dim`].
+    /// [`Problem::new_jacobian`](crate::Problem::new_jacobian) makes a matrix of another dimension than [`Problem::dim`](crate::Problem::dim).
     #[error("the Jacobian has dimension {got}, but the problem has {expected} unknowns")]
     JacobianSize {
         /// The matrix's dimension.
@@ -41,7 +41,7 @@ pub enum ProblemError {
     /// The mass matrix has an entry outside the Jacobian's pattern.
     #[error("the mass matrix: {0}")]
     Mass(OutsidePattern),
-    /// A scale, [`crate::Parameter::scale`] or [`Problem::unknown_scale`], that is not positive and finite.
+    /// A scale, [`crate::Parameter::scale`] or [`Problem::unknown_scale`](crate::Problem::unknown_scale), that is not positive and finite.
     #[error("the scale of `{parameter}` is {value}; it must be positive and finite")]
     Scale {
         /// Name of the parameter.
