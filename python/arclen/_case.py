@@ -227,9 +227,10 @@ def _is_bare(key: str, value: Any) -> bool:
 def _homes(problem: str, is_physical: bool, parameters: Iterable[str]) -> dict[str, str]:
     """The table in which a bare key of a case stands, of those that stand in one alone."""
     other = "dimensionless" if is_physical else "physical"
+    kind = problem if problem in ("contact", "two-plates", "ring-load") else "catalogue"
     homes: dict[str, str | None] = {}
     for table, problems, names in _tables():
-        if (problem in problems.split(", ") or problems.startswith("all")) and table != other:
+        if (kind in problems.split(", ") or problems.startswith("all")) and table != other:
             homes.update((name, None if name in homes else table) for name in names)
     homes.update((name, "parameters") for name in parameters)
     return {name: table for name, table in homes.items() if table is not None}
