@@ -261,6 +261,7 @@ pub(crate) fn find(
     let mut moved: Option<Vec<f64>> = None;
     let mut contracts = false;
     for iteration in 0..MAX_ITERATIONS {
+        let exact = matches!(known, Known::Nothing);
         let mut local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, known)?;
         if let Some(y) = &moved {
             local.learn(y, &amplitude);
@@ -285,7 +286,9 @@ pub(crate) fn find(
         // towards a degenerate point corrections shrink too, but never fast, nor do they grow
         let fast = correction <= FAST * last;
         contracts |= iteration > 0 && (fast || correction <= rounding && correction >= last);
-        let stagnant = contracts && correction <= rounding && correction > 0.25 * last;
+        // a form that is only about right makes corrections slow that are not rounding
+        let slow = contracts && correction <= rounding && correction > 0.25 * last;
+        let stagnant = slow && (exact || correction <= resolution);
         z.add(1.0, &step);
         if converged && (iteration > 0 || correction == 0.0) || stagnant {
             let left = if contracts || correction == 0.0 { 1.0 } else { SLOW };
@@ -299,12 +302,13 @@ pub(crate) fn find(
         }
         let settled = k == 1 && (fast && correction <= SETTLED || correction <= ROUNDING);
         known = match steering {
+            _ if slow => Known::Nothing,
             _ if settled => Known::Form(local.form),
             // the function varies on a scale that differences from one side do not meet
             Known::Roughly if iteration > 1 && !fast => Known::Nothing,
             _ => steering.clone(),
         };
-        moved = (settled && correction > ROUNDING).then_some(y);
+        moved = (settled && !slow && correction > ROUNDING).then_some(y);
         last = correction;
         // a state without a value is met by a shorter correction
         let mut part = 1.0;

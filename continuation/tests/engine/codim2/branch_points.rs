@@ -153,7 +153,10 @@ fn symmetry_breaking_on_a_branch_that_moves() {
         assert!((least - meet).abs() < 0.1 && points[points.len() - 1].p == 200.0);
         assert_eq!(found.branch.stopped.reason, StopReason::Domain);
         let through = found.first_end.reason == StopReason::Domain && points[0].p == 200.0;
-        assert!(through || found.first_end.detail.contains("meet there"), "{:?}", found.first_end);
+        // which of the two goes on is not told apart within 1e-8
+        let ends = found.first_end.detail.contains("meet there")
+            || found.first_end.reason == StopReason::BranchesTooClose;
+        assert!(through || ends, "{:?}", found.first_end);
     }
 }
 
