@@ -434,16 +434,11 @@ impl Problem for BranchPointCurve<'_> {
         r: &mut [f64],
         j: &mut Self::Jacobian,
     ) -> Result<(), EvalError> {
-        let mut work = self.work.borrow_mut();
         if *x == self.start {
+            let work = &mut *self.work.borrow_mut();
             work.kernel.clone_from(&self.at_start);
             work.level = Level::Nothing;
-        } else if work.level > Level::Nothing && astray(&self.base, &mut work) {
-            take(&self.base, &mut work);
-            work.level = Level::Nothing;
-            self.turn(&mut work, x, p)?;
         }
-        drop(work);
         self.residual(x, p, r)?;
         self.jacobian(x, p, j)
     }
@@ -498,6 +493,13 @@ impl Problem for BranchPointCurve<'_> {
         let curved = Self::form(work).iter().flatten().fold(0.0_f64, |m, f| m.max(f.abs()));
         out[last - 1] = x[n];
         out[last] = if curved > 0.0 { x[n] / curved } else { 0.0 };
+        // only here, at a state of the curve: borders from an iterate of Newton's method somewhere else
+        // may belong to another orientation
+        if astray(&self.base, work) {
+            take(&self.base, work);
+            work.level = Level::Nothing;
+            self.turn(work, x, p)?;
+        }
         Ok(())
     }
 }

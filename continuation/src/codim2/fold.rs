@@ -337,18 +337,6 @@ impl Problem for FoldCurve<'_> {
         Ok(())
     }
 
-    fn linearise(
-        &self,
-        x: &[f64],
-        p: &[f64],
-        r: &mut [f64],
-        j: &mut Self::Jacobian,
-    ) -> Result<(), EvalError> {
-        self.work.borrow_mut().renew();
-        self.residual(x, p, r)?;
-        self.jacobian(x, p, j)
-    }
-
     fn parameter_derivative(
         &self,
         x: &[f64],
@@ -392,6 +380,8 @@ impl Problem for FoldCurve<'_> {
         out[0] = x[n];
         self.base.problem.observe(&x[..n], &work.p, &mut out[1..self.first_test])?;
         out[self.first_test..].iter_mut().zip(tests).for_each(|(out, test)| *out = test);
+        // not from an iterate of Newton's method: its orientation may be another one
+        work.renew();
         Ok(())
     }
 

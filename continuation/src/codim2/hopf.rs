@@ -350,22 +350,6 @@ impl Problem for HopfCurve<'_> {
         Ok(())
     }
 
-    fn linearise(
-        &self,
-        x: &[f64],
-        p: &[f64],
-        r: &mut [f64],
-        j: &mut Self::Jacobian,
-    ) -> Result<(), EvalError> {
-        let mut work = self.work.borrow_mut();
-        if work.level > Level::Nothing && work.pair.renew() {
-            work.level = Level::Nothing;
-        }
-        drop(work);
-        self.residual(x, p, r)?;
-        self.jacobian(x, p, j)
-    }
-
     /// For the second parameter; the curve varies no other one.
     fn parameter_derivative(
         &self,
@@ -423,7 +407,12 @@ impl Problem for HopfCurve<'_> {
         let work = &mut *self.work.borrow_mut();
         out[self.test] = self.lyapunov(work, x, p)?;
         (out[0], out[1]) = (x[n], x[n + 1]);
-        self.base.problem.observe(&x[..n], &work.p, &mut out[2..self.test])
+        self.base.problem.observe(&x[..n], &work.p, &mut out[2..self.test])?;
+        // not from an iterate of Newton's method: its orientation may be another one
+        if work.level > Level::Nothing && work.pair.renew() {
+            work.level = Level::Nothing;
+        }
+        Ok(())
     }
 
     fn observable_slope(

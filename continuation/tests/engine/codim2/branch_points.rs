@@ -1,6 +1,7 @@
 //! Curves of branch points that persist, and of one that does not.
 
 use super::trace;
+use crate::random::Random;
 use continuation::codim2::{BranchPointCurve, Curve};
 use continuation::linalg::{Band, Matrix};
 use continuation::{
@@ -115,14 +116,15 @@ fn buckling_of_a_column_on_an_elastic_foundation() {
 }
 
 /// AUTO's `enz` with the rate `q`: on the symmetric branch `3 + q R'(s) = 0`, `p = s + q R(s)`.
+fn enz(s: &[f64], p: &[f64], r: &mut [f64]) {
+    let rate = |s: f64| p[1] * s / (1.0 + s + s * s);
+    r[0] = p[0] - 2.0 * s[0] + s[1] - rate(s[0]);
+    r[1] = p[0] - 2.0 * s[1] + s[0] - rate(s[1]);
+}
+
 #[test]
 fn symmetry_breaking_on_a_branch_that_moves() {
     let problem = || DenseProblem::from_residual(2, &["p", "q"], enz).boxed();
-    fn enz(s: &[f64], p: &[f64], r: &mut [f64]) {
-        let rate = |s: f64| p[1] * s / (1.0 + s + s * s);
-        r[0] = p[0] - 2.0 * s[0] + s[1] - rate(s[0]);
-        r[1] = p[0] - 2.0 * s[1] + s[0] - rate(s[1]);
-    }
     // the least q: s^3 = 3 s + 1
     let s = 2.0 * (PI / 9.0).cos();
     let meet = 3.0 * (1.0 + s + s * s).powi(2) / (s * s - 1.0);
@@ -153,10 +155,34 @@ fn symmetry_breaking_on_a_branch_that_moves() {
         assert!((least - meet).abs() < 0.1 && points[points.len() - 1].p == 200.0);
         assert_eq!(found.branch.stopped.reason, StopReason::Domain);
         let through = found.first_end.reason == StopReason::Domain && points[0].p == 200.0;
-        // which of the two goes on is not told apart within 1e-8
-        let ends = found.first_end.detail.contains("meet there")
-            || found.first_end.reason == StopReason::BranchesTooClose;
-        assert!(through || ends, "{:?}", found.first_end);
+        assert!(through || found.first_end.detail.contains("meet there"), "{:?}", found.first_end);
+    }
+}
+
+/// The two curves of `enz` end where they meet, or go on through, wherever they begin: what Newton's
+/// method tries beyond the place does not turn the orientation of what comes after.
+#[test]
+fn curves_that_meet_do_so_from_every_start() {
+    let s = 2.0 * (PI / 9.0).cos();
+    let meet = 3.0 * (1.0 + s + s * s).powi(2) / (s * s - 1.0);
+    let mut random = Random(7);
+    for _ in 0..16 {
+        let q = random.between(60.0, 150.0);
+        let problem = DenseProblem::from_residual(2, &["p", "q"], enz).boxed();
+        let branch = trace(&problem, "p", &[0.0, 0.0], &[0.0, q], 60.0);
+        let events: Vec<_> = branch.events_of(&EventKind::BranchPoint).collect();
+        assert_eq!(events.len(), 2, "{q}");
+        for event in events {
+            let curve = BranchPointCurve::at(&problem, &branch, event, "q").unwrap();
+            let found = follow(&curve, (20.0, 200.0));
+            let points = &found.branch.points;
+            let least = points.iter().fold(f64::INFINITY, |q, point| q.min(point.p));
+            assert!((least - meet).abs() < 0.1, "{q}: {least}");
+            assert_eq!(found.branch.stopped.reason, StopReason::Domain, "{q}");
+            let through = found.first_end.reason == StopReason::Domain && points[0].p == 200.0;
+            let meets = found.first_end.detail.contains("meet there");
+            assert!(through || meets, "{q}: {:?}", found.first_end);
+        }
     }
 }
 
