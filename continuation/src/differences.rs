@@ -462,16 +462,16 @@ pub(crate) fn by_parameter<P: Problem + ?Sized>(
     out: &mut [f64],
 ) -> Result<Vec<f64>, EvalError> {
     let unit = magnitude(p[which.0], problem.parameters()[which.0].scale);
-    let found = along(problem, (u, p), which, (&vec![0.0; u.len()], 1.0), unit, |_| true);
+    let residual = |u: &[f64], p: &[f64], r: &mut [f64]| problem.residual(u, p, r);
+    let found = along(residual, (u, p), which, (&vec![0.0; u.len()], 1.0), unit, |_| true);
     out.copy_from_slice(&found.derivative);
     crate::problem::check_finite(out)?;
     Ok(found.error)
 }
 
-/// `∂f/∂u du + ∂f/∂p[which] dp` of any problem, from its residuals where the parameter is `admitted`, with
-/// steps in `unit`.
-pub(crate) fn along<P: Problem + ?Sized>(
-    problem: &P,
+/// `∂f/∂u du + ∂f/∂p[which] dp`, from residuals where the parameter is `admitted`, with steps in `unit`.
+pub(crate) fn along(
+    residual: impl Fn(&[f64], &[f64], &mut [f64]) -> Result<(), EvalError>,
     (u, p): (&[f64], &[f64]),
     which: ParamId,
     (du, dp): (&[f64], f64),
@@ -482,7 +482,7 @@ pub(crate) fn along<P: Problem + ?Sized>(
     let mut ladder = Ladder::new(n);
     let (mut place, mut values) = (u.to_vec(), p.to_vec());
     let evaluate = |u: &[f64], p: &[f64], r: &mut [f64]| {
-        if !admitted(p[which.0]) || problem.residual(u, p, r).is_err() {
+        if !admitted(p[which.0]) || residual(u, p, r).is_err() {
             r.fill(f64::NAN);
         }
     };

@@ -118,7 +118,8 @@ fn compare(
         None => magnitude(p[which.0], problem.parameters()[which.0].scale),
     };
     let inside = |p: f64| guard.nearest(p) == p;
-    let ladder = differences::along(problem, (u, p), which, (du, dp), unit, inside);
+    let residual = |u: &[f64], p: &[f64], r: &mut [f64]| problem.residual(u, p, r);
+    let ladder = differences::along(residual, (u, p), which, (du, dp), unit, inside);
     let parameter = direction.is_none().then_some(problem.parameters()[which.0].name);
     let size = max_abs(&ladder.derivative).max(max_abs(&given));
     let rows = (0..n).filter_map(|row| {

@@ -4,7 +4,7 @@ use super::birth::SmallCycle;
 use super::cycle::{Cycle, CycleError};
 use super::point::observe;
 use super::settings::CycleSettings;
-use super::trace::{CycleBranch, trace};
+use super::trace::{CycleBranch, trace_of};
 use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Event, EventKind, StopReason};
 use crate::problem::Problem;
@@ -185,7 +185,7 @@ pub(crate) fn explore_of(
         let settings =
             Settings { increasing: Some(small.increasing), target: None, ..follow.trace.clone() };
         let number = found.branches.len();
-        let traced = trace(
+        let traced = trace_of(
             problem,
             &parameter,
             &small.cycle,
@@ -289,17 +289,17 @@ impl Explored {
         match from {
             CycleOrigin::Hopf { branch, event: at } => {
                 let Some(event) = event(equilibria[branch], at) else { return Ok(None) };
-                SmallCycle::at_hopf(problem, equilibria[branch], &event, settings).map(Some)
+                SmallCycle::of_hopf(problem, equilibria[branch], &event, settings).map(Some)
             }
             CycleOrigin::Doubling { branch, event: at } => {
                 let single = &self.branches[branch].cycles;
                 let Some(event) = event(&single.branch, at) else { return Ok(None) };
-                SmallCycle::at_doubling(problem, single, &event, settings).map(Some)
+                SmallCycle::of_doubling(problem, single, &event, settings).map(Some)
             }
             CycleOrigin::Crossing { branch, event: at, index, forward } => {
                 let crossed = &self.branches[branch].cycles;
                 let Some(event) = event(&crossed.branch, at) else { return Ok(None) };
-                SmallCycle::at_branch_point(problem, crossed, &event, index, forward, settings)
+                SmallCycle::of_branch_point(problem, crossed, &event, index, forward, settings)
                     .map(Some)
             }
         }

@@ -254,12 +254,11 @@ pub(crate) fn find(
         frame.renew(probe).ok_or(Failure::NoConvergence)?;
     }
     let mut amplitude = Vec::new();
-    let mut last = f64::INFINITY;
     // of larger kernels the vectors may turn within their span
     let steering = if k == 1 { Known::Roughly } else { Known::Nothing };
     let mut known = steering.clone();
     let mut moved: Option<Vec<f64>> = None;
-    let mut contracts = false;
+    let mut pace = Pace::default();
     for iteration in 0..MAX_ITERATIONS {
         let exact = matches!(known, Known::Nothing);
         let mut local = Local::of(probe, &mut frame, &z, &mut amplitude, tangent, known)?;
@@ -276,22 +275,19 @@ pub(crate) fn find(
             correction = correction.max(y.abs() / x);
         }
         let resolution = local.resolution(&amplitude);
-        let grows = iteration > 3 && correction > 10.0 * last.max(CONVERGED).max(resolution);
+        let grows = iteration > 3 && correction > 10.0 * pace.last.max(CONVERGED).max(resolution);
         if correction.is_nan() || correction > LONGEST || grows {
             return Err(Failure::NoConvergence);
         }
         let size = 1.0 + probe.norm(&z) / widest;
         let converged = correction <= CONVERGED * size;
         let rounding = (ROUNDING * size).max(resolution);
-        // towards a degenerate point corrections shrink too, but never fast, nor do they grow
-        let fast = correction <= FAST * last;
-        contracts |= iteration > 0 && (fast || correction <= rounding && correction >= last);
+        let (fast, slow) = pace.see(correction, rounding);
         // a form that is only about right makes corrections slow that are not rounding
-        let slow = contracts && correction <= rounding && correction > 0.25 * last;
         let stagnant = slow && (exact || correction <= resolution);
         z.add(1.0, &step);
         if converged && (iteration > 0 || correction == 0.0) || stagnant {
-            let left = if contracts || correction == 0.0 { 1.0 } else { SLOW };
+            let left = if pace.contracts || correction == 0.0 { 1.0 } else { SLOW };
             return finish(probe, frame, z, amplitude, tangent, left * correction, &beta);
         }
         if fast && iteration > 0 {
@@ -309,7 +305,6 @@ pub(crate) fn find(
             _ => steering.clone(),
         };
         moved = (settled && !slow && correction > ROUNDING).then_some(y);
-        last = correction;
         // a state without a value is met by a shorter correction
         let mut part = 1.0;
         while let Err(error) = probe.assemble(&z) {
@@ -324,6 +319,33 @@ pub(crate) fn find(
         frame.renew(probe).ok_or(Failure::NoConvergence)?;
     }
     Err(Failure::NoConvergence)
+}
+
+/// How the corrections shrink.
+struct Pace {
+    last: f64,
+    /// Whether they have shrunk fast, or are so small that they grow again. Towards a degenerate point they
+    /// never do either.
+    contracts: bool,
+}
+
+impl Default for Pace {
+    fn default() -> Self {
+        Pace { last: f64::INFINITY, contracts: false }
+    }
+}
+
+impl Pace {
+    /// Whether a correction is much shorter than the one before, and whether it is no longer much shorter
+    /// where it may be `rounding`.
+    fn see(&mut self, correction: f64, rounding: f64) -> (bool, bool) {
+        let fast = correction <= FAST * self.last;
+        let small = correction <= rounding;
+        self.contracts |= self.last.is_finite() && (fast || small && correction >= self.last);
+        let slow = self.contracts && small && correction > 0.25 * self.last;
+        self.last = correction;
+        (fast, slow)
+    }
 }
 
 fn finish(
@@ -548,4 +570,27 @@ fn amplitudes(
         others.fill((least * most).sqrt());
     }
     Ok(amplitude)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Pace;
+
+    /// Whether corrections are taken for rounding, one by one.
+    fn slow(corrections: &[f64]) -> Vec<bool> {
+        let mut pace = Pace::default();
+        corrections.iter().map(|c| pace.see(*c, 1e-8).1).collect()
+    }
+
+    #[test]
+    fn rounding_is_told_from_creeping() {
+        // quadratic, then rounding
+        assert_eq!(slow(&[1e-2, 1e-4, 1e-9, 8e-10]), [false, false, false, true]);
+        // rounding from the start: known as soon as it grows
+        assert_eq!(slow(&[4e-9, 3e-9, 5e-9]), [false, false, true]);
+        // towards a triple root: by two thirds each time, also below the threshold
+        let mut creeping: Vec<f64> = vec![1e-7];
+        creeping.extend((1..40).map(|k| 1e-7 * (2f64 / 3.0).powi(k)));
+        assert!(slow(&creeping).iter().all(|slow| !slow));
+    }
 }
