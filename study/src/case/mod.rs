@@ -9,6 +9,7 @@ mod device;
 pub(crate) mod document;
 pub(crate) mod error;
 mod film;
+mod key;
 pub mod keys;
 pub(crate) mod name;
 mod path;
