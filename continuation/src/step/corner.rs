@@ -1,13 +1,13 @@
 //! Whether a step cuts a corner: where branches cross at an acute angle, Newton's method may go over from
 //! one to the other, whose orientation and counts are the same behind the branch point.
 //!
-//! Position and tangent at both ends cannot tell a corner in the middle of a step from a smooth turn.
-//! Anywhere else the secant does not halve the angle between the tangents. In the middle the solution is
-//! not where the curvature before predicts it, and the cubic from both ends leaves the branch in between,
-//! which costs a residual and a solve to see.
+//! Positions and tangents at both ends tell a corner from a smooth turn only where it is near one of them.
+//! Else the cubic through both ends leaves the branch in between, which a residual and a solve see. A smooth
+//! branch that turns fast is off the cubic too, but differently: its tangent in the middle is that of the
+//! cubic, and Newton's method converges fast from there. Beside a corner it does not, since the branch point
+//! is near, or the tangent is that of one of the branches.
 
-use super::corrector::{Constraint, Core};
-use super::judge::Quality;
+use super::corrector::{Constraint, Core, Precision};
 use super::{Refusal, State};
 use crate::events::interpolate;
 
@@ -16,75 +16,75 @@ const VISIBLE: f64 = 0.025;
 /// The same below which a corner is not looked for: a branch that runs beside nearer than this part of a
 /// step.
 const FAINT: f64 = 1e-3;
-/// Part of the angle by which the prediction has to be wrong for a corner in the middle: one at a part `x`
-/// of the step makes `1 - x`.
-const SURPRISE: f64 = 0.15;
 /// Part of the whole turn by which the angles at both ends may differ: a corner at a quarter of the
 /// step makes a half, a cubic that begins straight a third.
 const ASYMMETRY: f64 = 0.45;
-/// The same where a singular point is close.
-const ASYMMETRY_NEAR_SINGULAR: f64 = 0.2;
-/// Contraction over deviation above which a singular point is close: Newton's method, begun `d h` off the
-/// branch, contracts by about `d h / 2r`, with `r` the distance to the singular point.
-const SINGULAR: f64 = 5.0;
-/// Part of both angles that is the angle between the tangents, below which the step turns one way and
-/// back: a corner against the curvature before it.
-const ONE_WAY: f64 = 0.6;
-/// Contraction of the corrector above which the branch is looked for between the ends.
-const SLOW: f64 = 0.15;
-/// Part of the angle that the cubic may be off in the middle of a step that shows no corner: going over to a
-/// branch that runs beside makes 1/20, the approach to a sharp fold 1/70.
-const BESIDE: f64 = 1.0 / 30.0;
-/// Part of the angle that the cubic may be off in the middle, in steps. A corner there makes 1/32, an arc
-/// of 0.35 radians 1/1000.
-const BOW: f64 = 1.0 / 80.0;
+/// Part of the whole turn by which the cubic may be off the branch, in steps, and nothing is asked: a corner
+/// in the middle makes 1/32 of its own angle, an arc of 0.35 radians 1/1000.
+const BOW: f64 = 1.0 / 300.0;
+/// Part of the whole turn between branch and cubic in the middle. A corner makes up to a half of its own
+/// angle; sharp folds, where steps are longest for what they turn, 1/40.
+const BENT: f64 = 0.05;
+/// The same relative to how far the cubic is off, in steps: a corner in the middle makes 16, smooth branches
+/// up to 2.
+const BENT_BY_BOW: f64 = 4.0;
+/// Contraction of Newton's method from the cubic above which a singular point is near: smooth turns make
+/// 0.03, what shows no corner otherwise a quarter.
+const CONTRACTION: f64 = 0.05;
 
 impl Core<'_> {
     /// Whether the step of scaled length `h` from `a` to `b`, whose factors are the latest, cuts a
-    /// corner; `secant` and `tangents` as in [`super::judge`].
+    /// corner; `secant` and `tangents` as in [`super::judge`], `middle` is overwritten.
     pub(crate) fn cuts_a_corner(
         &mut self,
         (a, b): (&State, &State),
         h: f64,
-        quality: &Quality,
         (_, cos_a, cos_b): (f64, f64, f64),
         tangents: f64,
+        middle: &mut State,
     ) -> Result<bool, Refusal> {
-        let angle = quality.angle;
         let [from, to] = [cos_a, cos_b].map(|x| x.clamp(-1.0, 1.0).acos());
+        let turn = from + to;
         if from.max(to) < FAINT || a.orientation != b.orientation {
             return Ok(false);
         }
-        let asymmetry = (from - to).abs() / (from + to);
-        let limit = if quality.contraction > SINGULAR * quality.deviation {
-            ASYMMETRY_NEAR_SINGULAR
-        } else {
-            ASYMMETRY
-        };
-        let uneven = asymmetry > limit || angle < ONE_WAY * (from + to);
-        let visible = from.max(to) >= VISIBLE;
-        if visible && uneven {
+        if from.max(to) >= VISIBLE && (from - to).abs() > ASYMMETRY * turn {
             return Ok(true);
         }
-        let surprising = visible && quality.deviation >= SURPRISE * angle;
-        // another branch close by, or an inflection and slow convergence: the cubic knows
-        let doubtful = uneven || quality.contraction > SLOW;
-        if !surprising && !doubtful {
+        interpolate(a, b, h, tangents, 0.5 * h, middle);
+        let bow = self.distance_from_branch(Constraint::Plane(a, 0.5 * h), middle)? / h;
+        if bow <= BOW * turn {
             return Ok(false);
         }
-        let bow = if surprising { BOW * angle } else { BESIDE * (from + to) };
-        Ok(self.leaves_branch((a, b), h, tangents)? > bow * h)
+        match self.correct(Constraint::Plane(a, 0.5 * h), middle, Precision::Look) {
+            Err(Refusal::Evaluation(error)) => Err(Refusal::Evaluation(error)),
+            Err(_) => Ok(true),
+            Ok(corrected) => {
+                let bent = self.bend_in_the_middle((a, b), h, tangents, middle);
+                Ok(corrected.contraction > CONTRACTION
+                    || bent > (BENT * turn).min(BENT_BY_BOW * bow))
+            }
+        }
     }
 
-    /// How far the cubic from both ends is from the branch in the middle of the step.
-    fn leaves_branch(
+    /// Angle between the branch, which `middle` lies on, and the cubic from both ends in its middle.
+    fn bend_in_the_middle(
         &mut self,
         (a, b): (&State, &State),
         h: f64,
         tangents: f64,
-    ) -> Result<f64, Refusal> {
-        let mut middle = b.clone();
-        interpolate(a, b, h, tangents, 0.5 * h, &mut middle);
-        self.distance_from_branch(Constraint::Plane(a, 0.5 * h), &middle)
+        middle: &State,
+    ) -> f64 {
+        let slope =
+            |a: f64, ta: f64, b: f64, tb: f64| 1.5 * (b - a) - 0.25 * h * (ta + tb / tangents);
+        let before = a.u.iter().zip(&a.tu);
+        for (du, ((a, ta), (b, tb))) in self.du.iter_mut().zip(before.zip(b.u.iter().zip(&b.tu))) {
+            *du = slope(*a, *ta, *b, *tb);
+        }
+        let dp = slope(a.p, a.tp, b.p, b.tp);
+        self.problem.metric(&self.du, &mut self.mdu);
+        let along = self.weights.dot(&self.mdu, dp, &middle.tu, middle.tp);
+        let norm = self.weights.norm(&self.mdu, &self.du, dp);
+        if norm > 0.0 { (along / norm).clamp(-1.0, 1.0).acos() } else { 0.0 }
     }
 }

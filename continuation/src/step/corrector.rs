@@ -37,6 +37,8 @@ pub(crate) enum Precision {
     /// As [`Precision::Event`], for a place that does not depend on the tangent: where factorisations are
     /// dear it may be corrected by a difference.
     Place,
+    /// As [`Precision::Step`], for a look at the branch: neither stability nor observables.
+    Look,
 }
 
 /// What a correction did.
@@ -76,8 +78,8 @@ pub(crate) struct Core<'a> {
     facts: Option<BorderedFacts>,
     stability: StabilityCount,
     r: Vec<f64>,
-    du: Vec<f64>,
-    mdu: Vec<f64>,
+    pub(super) du: Vec<f64>,
+    pub(super) mdu: Vec<f64>,
     shifted: [Vec<f64>; 2],
     observed: [Vec<f64>; 2],
 }
@@ -212,24 +214,24 @@ impl<'a> Core<'a> {
             }
             report.last = correction;
             let done = match precision {
-                Precision::Step => expected <= converged && correction <= near,
+                Precision::Step | Precision::Look => expected <= converged && correction <= near,
                 // tangents of a nearly singular state magnify what a first correction left
                 Precision::Event | Precision::Place => {
                     correction <= 3.0 * converged && iteration > 0
                 }
             };
             if done || stagnant {
-                self.finish(constraint, x)?;
+                self.finish(constraint, x, precision)?;
                 return Ok(report);
             }
             if precision != Precision::Event && self.follow_up(constraint, x, size, &mut report) {
-                self.complete(x)?;
+                self.complete(x, precision)?;
                 if let Constraint::Plane(base, _) = constraint
                     && Self::is_near_change(base, x)
                 {
                     self.assemble(&x.u, x.p).map_err(Refusal::Evaluation)?;
                     self.facts = Some(self.bordered.factor(&mut self.jacobian));
-                    self.finish(constraint, x)?;
+                    self.finish(constraint, x, precision)?;
                 }
                 return Ok(report);
             }
@@ -246,7 +248,12 @@ impl<'a> Core<'a> {
     }
 
     /// Tangent, orientation, stability and observables from the latest factors.
-    fn finish(&mut self, constraint: Constraint<'_>, x: &mut State) -> Result<(), Refusal> {
+    fn finish(
+        &mut self,
+        constraint: Constraint<'_>,
+        x: &mut State,
+        precision: Precision,
+    ) -> Result<(), Refusal> {
         if let Constraint::Parameter(base, _) = constraint {
             self.border(Constraint::Plane(base, 0.0));
             self.facts = Some(self.bordered.factor(&mut self.jacobian));
@@ -259,7 +266,7 @@ impl<'a> Core<'a> {
             self.facts = Some(self.bordered.factor(&mut self.jacobian));
             self.solve_tangent(x);
         }
-        self.complete(x)
+        self.complete(x, precision)
     }
 
     /// The tangent from the latest factors, of any length.
@@ -271,8 +278,11 @@ impl<'a> Core<'a> {
     }
 
     /// Everything at `x` that follows from its tangent, which need not be normalised yet.
-    fn complete(&mut self, x: &mut State) -> Result<(), Refusal> {
+    fn complete(&mut self, x: &mut State, precision: Precision) -> Result<(), Refusal> {
         self.normalise(x)?;
+        if precision == Precision::Look {
+            return Ok(());
+        }
         if self.stability.wants_eigenvalues() {
             self.assemble(&x.u, x.p).map_err(Refusal::Evaluation)?;
             self.facts = Some(self.bordered.factor(&mut self.jacobian));
@@ -366,7 +376,7 @@ impl<'a> Core<'a> {
         self.border(Constraint::Plane(&base, 0.0));
         self.facts = Some(self.bordered.factor(&mut self.jacobian));
         self.solve_tangent(x);
-        self.complete(x)
+        self.complete(x, Precision::Event)
     }
 
     /// Weights at the start, where the tangent has any length: what the problem says, else how far

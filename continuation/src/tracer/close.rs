@@ -11,6 +11,10 @@ const NARROW: f64 = 1e-2;
 /// changed the orientation: its corner blurs short steps; longer ones see the crossing branches only.
 const LENGTHS: [f64; 4] = [1.0, 8.0, 64.0, 512.0];
 
+/// Part of the largest separation on a curve of special points below which two of them meet where a trace
+/// cannot go on: ten times that which ends a trace by itself.
+const STANDS: f64 = 10.0 * super::MEETING;
+
 impl Tracer<'_> {
     /// Where steps fail at every length though a longer one had reached a state of the other
     /// orientation, the branch runs into a branch point, near which short steps see rounding only.
@@ -49,6 +53,13 @@ impl Tracer<'_> {
             "at {name} = {p:.10} another branch passes at a distance of {gap:.1e} or less, too close \
              to be told apart; the last step was refused because: {refusal}"
         )
+    }
+
+    /// Whether two special points of a curve meet where the trace stands: states there are known to fewer
+    /// digits than the shortest step asks for, whatever the last step was refused for.
+    pub(super) fn stands_at_meeting(&mut self) -> bool {
+        let separation = self.core.separation(&self.current);
+        separation.is_ok_and(|s| s.is_some_and(|s| s < STANDS * self.separation))
     }
 
     /// Why the trace ends where steps from `first` down to `last` were refused.

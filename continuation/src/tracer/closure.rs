@@ -3,11 +3,13 @@
 use super::Tracer;
 use crate::branch::StopReason;
 use crate::events::basis;
-use crate::step::{Core, State};
+use crate::step::{Constraint, Core, Precision, State};
 
 /// How far from the start, relative to the step, a branch may pass and still be the same: the
 /// error of the Hermite cubic by which the step is interpolated.
-const SAME: f64 = 0.02;
+const NEAR: f64 = 0.02;
+/// The same once it is corrected on the plane of the start: the other side of a flat loop is farther.
+const SAME: f64 = 1e-4;
 
 impl Tracer<'_> {
     /// Whether the step of scaled length `h` closes the branch: over its start, in which
@@ -59,10 +61,20 @@ fn passes(
     }
     work.p = w0 * current.p + w1 * current.tp + w2 * trial.p + w3 * trial.tp;
     let (off, ..) = core.secant(work, at);
+    if off > NEAR * h {
+        return None;
+    }
+    // at a branch point it may not converge
+    if core.correct(Constraint::Plane(at, 0.0), work, Precision::Look).is_ok() {
+        let (off, ..) = core.secant(work, at);
+        if off > SAME * h {
+            return None;
+        }
+    }
     // as far along the tangent
     let du = at.u.iter().zip(&current.u).zip(&current.mtu);
     let along: f64 = du.map(|((a, b), m)| (a - b) * m).sum();
     let along = along / (w.unknowns * w.unknowns)
         + current.tp * (at.p - current.p) / (w.parameter * w.parameter);
-    (off <= SAME * h).then_some(along)
+    Some(along)
 }

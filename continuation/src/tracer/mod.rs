@@ -410,6 +410,8 @@ impl<'a> Tracer<'a> {
                         shortest = self.size.shortest(length);
                     }
                     if h < shortest {
+                        let refusal =
+                            if self.stands_at_meeting() { Refusal::Meeting } else { refusal };
                         let mut detail = match self.cross(&refusal) {
                             Ok(()) => return,
                             Err(Some(gap)) => {
@@ -440,12 +442,12 @@ impl<'a> Tracer<'a> {
                 (h, core.correct(Constraint::Plane(current, h), trial, Precision::Step)?)
             }
         };
-        let Self { core, current, trial, settings, .. } = self;
+        let Self { core, current, trial, work, settings, .. } = self;
         let laborious = core.statistics.newton_iterations - before >= examine::LABORIOUS;
         let secant = core.secant(current, trial);
         let tangents = core.weights.dot(&current.mtu, current.tp, &trial.tu, trial.tp);
         let quality = judge(settings, trial, h, &corrected, secant, tangents)?;
-        if !final_say && core.cuts_a_corner((current, trial), h, &quality, secant, tangents)? {
+        if !final_say && core.cuts_a_corner((current, trial), h, secant, tangents, work)? {
             return Err(Refusal::Turn { angle: quality.angle });
         }
         if let Some(separation) = core.separation(trial)? {
