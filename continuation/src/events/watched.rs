@@ -25,6 +25,8 @@ const FAR: f64 = 1e-3;
 const ASIDE: f64 = 1e-12;
 /// By how much an error may exceed what two slopes show of it.
 const NOISE: f64 = 4.0;
+/// States by which the rounding of an extremum's slope is judged.
+const DRAWS: u32 = 3;
 /// Most corrections of an extremum's place.
 const SETTLINGS: usize = 4;
 /// Shortest bracket: state and distance are rounded.
@@ -126,6 +128,12 @@ fn settle(
         let known = again.max(f64::EPSILON * (1.0 + at));
         (located.at, located.error) = (at, NOISE * now.max(known));
         if now <= tolerance.max(known) || 2.0 * now >= off {
+            // one draw of the noise may be small by chance
+            for k in 1..DRAWS {
+                let beside = at + f64::from(k) * aside;
+                core.correct(Constraint::Plane(a, beside), x, Precision::Event)?;
+                located.error = located.error.max(NOISE * (value(x) / steep).abs());
+            }
             break;
         }
         off = now;

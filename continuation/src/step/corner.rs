@@ -8,6 +8,7 @@
 //! is near, or the tangent is that of one of the branches.
 
 use super::corrector::{Constraint, Core, Precision};
+use super::judge::Quality;
 use super::{Refusal, State};
 use crate::events::interpolate;
 
@@ -19,6 +20,16 @@ const FAINT: f64 = 1e-3;
 /// Part of the whole turn by which the angles at both ends may differ: a corner at a quarter of the
 /// step makes a half, a cubic that begins straight a third.
 const ASYMMETRY: f64 = 0.45;
+/// The same from which the cubic is asked. Smooth turns make 0.05.
+const UNEVEN: f64 = 0.1;
+/// Part of both angles that is the angle between the tangents, below which the step turns one way and
+/// back: a corner against the curvature before it.
+const ONE_WAY: f64 = 0.6;
+/// Contraction of the corrector above which the cubic is asked.
+const SLOW: f64 = 0.1;
+/// Part of the angle by which the prediction has to be wrong for the cubic to be asked: a corner at a part
+/// `x` of the step makes `1 - x` of its own angle.
+const SURPRISE: f64 = 0.1;
 /// Part of the whole turn by which the cubic may be off the branch, in steps, and nothing is asked: a corner
 /// in the middle makes 1/32 of its own angle, an arc of 0.35 radians 1/1000.
 const BOW: f64 = 1.0 / 300.0;
@@ -39,6 +50,7 @@ impl Core<'_> {
         &mut self,
         (a, b): (&State, &State),
         h: f64,
+        quality: &Quality,
         (_, cos_a, cos_b): (f64, f64, f64),
         tangents: f64,
         middle: &mut State,
@@ -50,6 +62,13 @@ impl Core<'_> {
         }
         if from.max(to) >= VISIBLE && (from - to).abs() > ASYMMETRY * turn {
             return Ok(true);
+        }
+        let doubtful = (from - to).abs() > UNEVEN * turn
+            || quality.angle < ONE_WAY * turn
+            || quality.contraction > SLOW
+            || quality.deviation > SURPRISE * quality.angle;
+        if !doubtful {
+            return Ok(false);
         }
         interpolate(a, b, h, tangents, 0.5 * h, middle);
         let bow = self.distance_from_branch(Constraint::Plane(a, 0.5 * h), middle)? / h;

@@ -447,7 +447,9 @@ impl<'a> Tracer<'a> {
         let secant = core.secant(current, trial);
         let tangents = core.weights.dot(&current.mtu, current.tp, &trial.tu, trial.tp);
         let quality = judge(settings, trial, h, &corrected, secant, tangents)?;
-        if !final_say && core.cuts_a_corner((current, trial), h, secant, tangents, work)? {
+        if !final_say
+            && core.cuts_a_corner((current, trial), h, &quality, secant, tangents, work)?
+        {
             return Err(Refusal::Turn { angle: quality.angle });
         }
         if let Some(separation) = core.separation(trial)? {

@@ -1,7 +1,7 @@
 //! `arclen fit --plan CASE`: what a lever, a range and a noise would identify of a shell.
 
 use super::lab::{Lab, Wishes};
-use crate::case::{ContactCase, Law, ProblemCase, ResolvedCase, Stiffness};
+use crate::case::{ContactCase, DeviceCase, Law, ProblemCase, ResolvedCase, Stiffness};
 use identify::plan::{Depth, Experiment, QUANTITIES, plan};
 use identify::{Key, LawName};
 use serde_json::json;
@@ -33,6 +33,12 @@ pub fn planned(case: &ResolvedCase, lab: &Lab, wishes: Wishes<'_>) -> Result<Pla
             "{name}: problem: only a contact case has a lever; problem = \"contact\""
         ));
     };
+    if contact.device != DeviceCase::Grip {
+        return Err(format!(
+            "{name}: device: a plan reads the path as plate distances and takes its lever from LAB; leave \
+             the table out"
+        ));
+    }
     let Some(noise) = lab.noise else {
         return Err("instrument.noise: missing; the standard deviation of the force, such as \
                     --set instrument.noise=\"50 pN\""
