@@ -20,8 +20,13 @@ const FAINT: f64 = 1e-3;
 /// Part of the whole turn by which the angles at both ends may differ: a corner at a quarter of the
 /// step makes a half, a cubic that begins straight a third.
 const ASYMMETRY: f64 = 0.45;
+/// The same where a singular point is close.
+const ASYMMETRY_NEAR_SINGULAR: f64 = 0.2;
 /// The same from which the cubic is asked. Smooth turns make 0.05.
 const UNEVEN: f64 = 0.1;
+/// Contraction over deviation above which a singular point is close: Newton's method, begun `d h` off the
+/// branch, contracts by about `d h / 2r`, with `r` the distance to the singular point.
+const SINGULAR: f64 = 5.0;
 /// Part of both angles that is the angle between the tangents, below which the step turns one way and
 /// back: a corner against the curvature before it.
 const ONE_WAY: f64 = 0.6;
@@ -30,8 +35,12 @@ const SLOW: f64 = 0.1;
 /// Part of the angle by which the prediction has to be wrong for the cubic to be asked: a corner at a part
 /// `x` of the step makes `1 - x` of its own angle.
 const SURPRISE: f64 = 0.1;
-/// Part of the whole turn by which the cubic may be off the branch, in steps, and nothing is asked: a corner
-/// in the middle makes 1/32 of its own angle, an arc of 0.35 radians 1/1000.
+/// Part of the turn that the cubic may be off in the middle of a step, in steps, at most: going over to a
+/// branch that runs beside makes 1/20, the approach to a sharp fold 1/70.
+const BESIDE: f64 = 1.0 / 30.0;
+/// The same where the prediction was wrong. A corner in the middle that is all of the turn makes 1/32.
+const SURPRISED: f64 = 1.0 / 80.0;
+/// The same up to which nothing more is asked: an arc of 0.35 radians makes 1/1000.
 const BOW: f64 = 1.0 / 300.0;
 /// Part of the whole turn between branch and cubic in the middle. A corner makes up to a half of its own
 /// angle; sharp folds, where steps are longest for what they turn, 1/40.
@@ -60,20 +69,25 @@ impl Core<'_> {
         if from.max(to) < FAINT || a.orientation != b.orientation {
             return Ok(false);
         }
-        if from.max(to) >= VISIBLE && (from - to).abs() > ASYMMETRY * turn {
+        let asymmetry = (from - to).abs() / turn;
+        let near_singular = quality.contraction > SINGULAR * quality.deviation;
+        let limit = if near_singular { ASYMMETRY_NEAR_SINGULAR } else { ASYMMETRY };
+        let one_way = quality.angle >= ONE_WAY * turn;
+        let visible = from.max(to) >= VISIBLE;
+        if visible && (asymmetry > limit || !one_way) {
             return Ok(true);
         }
-        let doubtful = (from - to).abs() > UNEVEN * turn
-            || quality.angle < ONE_WAY * turn
-            || quality.contraction > SLOW
-            || quality.deviation > SURPRISE * quality.angle;
-        if !doubtful {
+        let surprising = quality.deviation > SURPRISE * quality.angle;
+        if !surprising && asymmetry <= UNEVEN && one_way && quality.contraction <= SLOW {
             return Ok(false);
         }
         interpolate(a, b, h, tangents, 0.5 * h, middle);
         let bow = self.distance_from_branch(Constraint::Plane(a, 0.5 * h), middle)? / h;
         if bow <= BOW * turn {
             return Ok(false);
+        }
+        if bow > if surprising && visible { SURPRISED * quality.angle } else { BESIDE * turn } {
+            return Ok(true);
         }
         match self.correct(Constraint::Plane(a, 0.5 * h), middle, Precision::Look) {
             Err(Refusal::Evaluation(error)) => Err(Refusal::Evaluation(error)),
