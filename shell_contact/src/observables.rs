@@ -82,7 +82,13 @@ pub(crate) fn observe<F: Potential>(
 ) -> Result<Observation, EvalError> {
     let (c, gas) = problem.coefficients(u, p)?;
     let mesh = &problem.mesh;
-    let parts = with_law!(problem, |law| energy::parts(mesh, u, &law, &problem.potential, &c))?;
+    let parts = with_law!(c.material(problem.shell.law), |law| energy::parts(
+        mesh,
+        u,
+        &law,
+        &problem.potential,
+        &c
+    ))?;
     let whole = 4.0 * PI;
     let energies = [
         parts.stretching,
@@ -205,7 +211,7 @@ impl<F: Potential> ContactProblem<F> {
     pub fn profile(&self, u: &[f64], p: &[f64], samples: usize) -> Result<Profile, EvalError> {
         let (c, _) = self.coefficients(u, p)?;
         energy::admissible(&self.mesh, u, self.potential.wall(&c))?;
-        let tensions = |s, phi| with_law!(self, |law| tensions(&law, s, phi));
+        let tensions = |s, phi| with_law!(c.material(self.shell.law), |law| tensions(&law, s, phi));
         Ok(Profile::of(&self.mesh, &self.potential, u, &c, samples, tensions))
     }
 }

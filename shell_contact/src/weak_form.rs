@@ -66,7 +66,9 @@ pub fn balances<F: Potential>(
             let (bend_s, bend_phi) = (turning - 1.0, stretch_phi * kphi - 1.0);
             let ms = c.bending / stretch_phi * (bend_s + c.poisson * bend_phi);
             let mphi = c.bending / stretch_s * (bend_phi + c.poisson * bend_s);
-            let (tau_s, tau_phi) = with_law!(problem, |law| tensions(&law, stretch_s, stretch_phi));
+            let material = c.material(problem.shell.law);
+            let (tau_s, tau_phi) =
+                with_law!(material, |law| tensions(&law, stretch_s, stretch_phi));
             let film = problem.potential.jet(c.plate - z, c.adhesion, c.film);
             // attraction positive, as Eq. (16) has it
             let disjoining = film.d1 * s1 / a;

@@ -30,7 +30,7 @@ const NAMES: [&str; observables::NAMES.len() + 1] = {
 pub struct LoadedProblem<'c, F: Potential = Film> {
     contact: &'c ContactProblem<F>,
     device: Device,
-    parameters: [Parameter; parameter::COUNT],
+    parameters: Vec<Parameter>,
 }
 
 impl<'c, F: Potential> LoadedProblem<'c, F> {
@@ -50,9 +50,8 @@ impl<'c, F: Potential> LoadedProblem<'c, F> {
                 return Err(DeviceError::Stiffness { value: stiffness });
             }
         };
-        let mut parameters: [Parameter; parameter::COUNT] =
-            std::array::from_fn(|k| contact.parameters()[k].clone());
-        parameters[0] = first;
+        let others = contact.parameters().iter().skip(1).cloned();
+        let parameters = [first].into_iter().chain(others).collect();
         Ok(LoadedProblem { contact, device, parameters })
     }
 
@@ -287,7 +286,7 @@ impl<F: Potential> Loading for LoadedProblem<'_, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::certify::{H, dot, energy, problem, state};
+    use crate::certify::{H, dot, duals, energy, problem, state};
     use crate::dual::{close, real};
     use crate::params::Law;
     use continuation::{Matrix, check_derivatives};
@@ -296,7 +295,13 @@ mod tests {
     const DEVICES: [Device; 2] = [Device::DeadLoad, Device::Cantilever { stiffness: 7.0 }];
 
     /// The potential written once more, with the plate moved along `a` and `b` too.
-    fn potential(device: Device, contact: &ContactProblem, x: &[f64], dual: [H; 6], z0: H) -> H {
+    fn potential(
+        device: Device,
+        contact: &ContactProblem,
+        x: &[f64],
+        dual: [H; parameter::COUNT],
+        z0: H,
+    ) -> H {
         potential_along(device, contact, x, [&vec![0.0; x.len()], &vec![0.0; x.len()]], dual, z0)
     }
 
@@ -305,7 +310,7 @@ mod tests {
         contact: &ContactProblem,
         x: &[f64],
         [a, b]: [&[f64]; 2],
-        dual: [H; 6],
+        dual: [H; parameter::COUNT],
         z0: H,
     ) -> H {
         let n = contact.dim();
@@ -327,7 +332,7 @@ mod tests {
             let loaded = LoadedProblem::new(&contact, device).unwrap();
             let x = loaded.state(&state(n, 0.3, 0.01), 1.07);
             let p = loaded.parameters_at(0.9);
-            let plain: [H; 6] = std::array::from_fn(|k| real(p[k]));
+            let plain = duals(&p);
             let (mut r, mut alone) = (vec![0.0; n + 1], vec![0.0; n + 1]);
             let (mut j, mut again) = (loaded.new_jacobian(), loaded.new_jacobian());
             loaded.linearise(&x, &p, &mut r, &mut j).unwrap();
@@ -346,7 +351,7 @@ mod tests {
                 again.mul(&b, &mut jb_again);
                 close(dot(&a, &jb), e.eps1eps2, 1e-12, 1e-14 * size(&a, &jb));
                 close(dot(&a, &jb), dot(&a, &jb_again), 1e-13, 1e-14 * size(&a, &jb));
-                for k in 0..parameter::COUNT {
+                for k in 0..p.len() {
                     let mut dual = plain;
                     dual[k].eps2 = 1.0;
                     let still = vec![0.0; n + 1];
@@ -369,7 +374,7 @@ mod tests {
             let loaded = LoadedProblem::new(&contact, device).unwrap();
             let x = loaded.state(&state(contact.dim(), 0.3, 0.01), 1.07);
             let p = loaded.parameters_at(0.9);
-            let plain: [H; 6] = std::array::from_fn(|k| real(p[k]));
+            let plain = duals(&p);
             let half = potential(device, &contact, &x, plain, real(1.07)).re;
             close(loaded.potential(&x, &p).unwrap(), 4.0 * PI * half, 1e-12, 0.0);
         }

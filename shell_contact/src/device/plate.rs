@@ -17,7 +17,8 @@ impl<F: Potential> ContactProblem<F> {
     pub fn total_energy(&self, u: &[f64], p: &[f64]) -> Result<f64, EvalError> {
         let (c, gas) = self.coefficients(u, p)?;
         let (mesh, film) = (&self.mesh, &self.potential);
-        let parts = with_law!(self, |law| energy::parts(mesh, u, &law, film, &c))?;
+        let parts =
+            with_law!(c.material(self.shell.law), |law| energy::parts(mesh, u, &law, film, &c))?;
         let elastic = parts.stretching + parts.bending + parts.film;
         Ok(4.0 * PI * (elastic + gas.energy(parts.volume) + c.surface_tension * parts.area))
     }

@@ -223,7 +223,8 @@ impl<'a> AsymmetricModes<'a> {
         let (c, gas) = problem.coefficients(u, p)?;
         let excess = gas.excess(energy::volume(self.mesh, u)?);
         let film = &problem.potential;
-        with_law!(problem, |law| self.assemble_with(&law, film, &c, excess, u))
+        with_law!(c.material(problem.shell.law), |law| self
+            .assemble_with(&law, film, &c, excess, u))
     }
 
     /// Takes the state `u` under the excess pressure `P_G − P_A`.

@@ -145,7 +145,7 @@ impl<'a> WholeModes<'a> {
         self.inside.iter_mut().for_each(|columns| columns.fill([0.0; ROWS]));
         self.bound = 0.0;
         let (above, below) = &problem.potentials;
-        with_law!(problem, |law| {
+        with_law!(c[0].material(problem.shell.law), |law| {
             self.add(problem, Side::Top, &law, above, &c[0], excess, u)?;
             self.add(problem, Side::Bottom, &law, below, &c[1], excess, u)
         })

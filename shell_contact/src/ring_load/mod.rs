@@ -181,6 +181,7 @@ impl RingLoadProblem {
         let c = Coefficients {
             bending,
             poisson: self.shell.poisson,
+            b: self.shell.law.b().unwrap_or(0.0),
             surface_tension: 0.0,
             adhesion: 0.0,
             film: 1.0,
@@ -274,7 +275,7 @@ impl Problem for RingLoadProblem {
     }
 
     fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
-        with_law!(self, |law| self.residual_as(&law, u, p, r))
+        with_law!(self.shell, |law| self.residual_as(&law, u, p, r))
     }
 
     fn jacobian(
@@ -293,7 +294,7 @@ impl Problem for RingLoadProblem {
         r: &mut [f64],
         j: &mut Arrow<SymmetricBand>,
     ) -> Result<(), EvalError> {
-        with_law!(self, |law| self.assemble(&law, (u, p), r, j, Row::Level))
+        with_law!(self.shell, |law| self.assemble(&law, (u, p), r, j, Row::Level))
     }
 
     fn parameter_derivative(
@@ -313,7 +314,7 @@ impl Problem for RingLoadProblem {
         let (shell, _) = out.split_at_mut(self.coefficients);
         match which {
             parameter::ALPHA => {
-                with_law!(self, |law| moving.angle_derivative(&law, x, &c, &gas, shell));
+                with_law!(self.shell, |law| moving.angle_derivative(&law, x, &c, &gas, shell));
                 let mut slope = -alpha.cos();
                 for at in &ring {
                     let force = c.bending * q[0];
@@ -363,7 +364,7 @@ impl Problem for RingLoadProblem {
         h: &mut Arrow<SymmetricBand>,
     ) -> Result<(), EvalError> {
         let mut r = self.gradient.borrow_mut();
-        with_law!(self, |law| self.assemble(&law, (u, p), &mut r, h, Row::Height))
+        with_law!(self.shell, |law| self.assemble(&law, (u, p), &mut r, h, Row::Height))
     }
 
     fn multipliers(&self) -> usize {

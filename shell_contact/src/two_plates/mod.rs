@@ -61,6 +61,7 @@ pub use pairs::{SpringPair, spring_pairs};
 pub use search::{Unconnected, next_unconnected};
 pub use supported::{Support, SupportedProblem};
 
+use crate::contact::{gas_and_material, gas_and_material_of};
 use crate::density::Coefficients;
 use crate::energy;
 use crate::film::{Film, Potential, Wall};
@@ -93,8 +94,12 @@ pub mod parameter {
     pub const ADHESION_BOTTOM: ParamId = ParamId(6);
     /// Film length `δ_A/R0` of the lower plate.
     pub const FILM_BOTTOM: ParamId = ParamId(7);
-    /// How many there are.
-    pub const COUNT: usize = 8;
+    /// Exponent of the gas `γ`.
+    pub const GAS_EXPONENT: ParamId = ParamId(8);
+    /// Poisson's ratio `ν`.
+    pub const POISSON: ParamId = ParamId(9);
+    /// The share `b` of Mooney and Rivlin's law, for a shell of that law.
+    pub const B: ParamId = ParamId(10);
 }
 
 /// What is in front of one plate.
@@ -167,7 +172,7 @@ pub struct TwoPlatesProblem<T: Potential = Film, B: Potential = Film> {
     pub(crate) shell: Shell,
     pub(crate) potentials: (T, B),
     groups: TwoPlatesGroups,
-    parameters: [Parameter; parameter::COUNT],
+    parameters: Vec<Parameter>,
     mass: SymmetricBand,
     volume_gradient: RefCell<Vec<f64>>,
 }
@@ -201,7 +206,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         groups.validate()?;
         let scale = |value: f64, otherwise: f64| if value > 0.0 { value } else { otherwise };
         let parameter = |name, unit, scale| Parameter { name, unit, scale };
-        let parameters = [
+        let own = [
             parameter("z0", "R0", 1.0),
             parameter("bending", "chi R0^2", groups.bending),
             parameter("pressure", "chi/R0", scale(groups.pressure, 1.0)),
@@ -211,6 +216,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
             parameter("adhesion_bottom", "chi", scale(groups.bottom.adhesion, 1e-3)),
             parameter("film_bottom", "R0", groups.bottom.film),
         ];
+        let parameters = own.into_iter().chain(gas_and_material(shell.law)).collect();
         let unknowns = Half::unknowns(&mesh);
         let mut mass = SymmetricBand::new(unknowns, HALF_BANDWIDTH);
         for side in Side::BOTH {
@@ -231,7 +237,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     pub fn parameters_at(&self, z0: f64) -> Vec<f64> {
         let g = &self.groups;
         let (top, bottom) = (g.top, g.bottom);
-        vec![
+        let own = [
             z0,
             g.bending,
             g.pressure,
@@ -240,7 +246,8 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
             top.film,
             bottom.adhesion,
             bottom.film,
-        ]
+        ];
+        own.into_iter().chain(gas_and_material_of(g.gas_exponent, &self.shell)).collect()
     }
 
     /// The mesh of either half.

@@ -51,7 +51,7 @@ pub struct Support {
 pub struct SupportedProblem<'c, T: Potential = Film, B: Potential = Film> {
     shell: &'c TwoPlatesProblem<T, B>,
     support: Support,
-    parameters: [Parameter; parameter::COUNT],
+    parameters: Vec<Parameter>,
     /// `∂w(π/2)/∂u`
     equator: Vec<f64>,
 }
@@ -73,10 +73,9 @@ impl<'c, T: Potential, B: Potential> SupportedProblem<'c, T, B> {
                 remedy: "k_c in sqrt(chi k_b)/R0; a rigid plate needs none",
             });
         }
-        let mut parameters: [Parameter; parameter::COUNT] =
-            std::array::from_fn(|k| shell.parameters()[k].clone());
-        if support.spring.is_some() {
-            parameters[0].name = "base";
+        let mut parameters = shell.parameters().to_vec();
+        if let (Some(_), Some(first)) = (support.spring, parameters.first_mut()) {
+            first.name = "base";
         }
         let [top, _] = shell.halves();
         let mut equator = vec![0.0; shell.dim()];

@@ -163,6 +163,9 @@ pub fn fit_file(
             }
         },
     };
+    if let [law] = chosen[..] {
+        Lab::allows(law, wishes).map_err(input)?;
+    }
     let mut found: Vec<(LawName, Setup, Result<Identification, FitError>)> = Vec::new();
     let laws = chosen.len() as f64;
     for (done, law) in chosen.into_iter().enumerate() {
