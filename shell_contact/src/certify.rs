@@ -188,8 +188,13 @@ fn is_gradient(film: Film) {
     close(4.0 * std::f64::consts::PI * dot(&r, &du), difference, 1e-8, 0.0);
 }
 
+/// Threads may share every problem of a shell.
 #[test]
-fn problem_can_be_sent_to_another_thread() {
-    fn send<T: Send>(_: &T) {}
-    send(&problem(Law::Hooke, 4));
+fn problems_are_send_and_sync() {
+    fn shared<T: Send + Sync>() {}
+    shared::<ContactProblem>();
+    shared::<crate::device::LoadedProblem<'_>>();
+    shared::<crate::two_plates::TwoPlatesProblem>();
+    shared::<crate::two_plates::SupportedProblem<'_>>();
+    shared::<crate::ring_load::RingLoadProblem>();
 }

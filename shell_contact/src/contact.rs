@@ -17,7 +17,6 @@ use crate::scalar::{Lanes, Scalar};
 use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
-use std::cell::RefCell;
 use std::f64::consts::PI;
 
 /// Indices of the parameters in `p`.
@@ -112,7 +111,6 @@ pub struct ContactProblem<F: Potential = Film> {
     pub(crate) potential: F,
     groups: Dimensionless,
     parameters: Vec<Parameter>,
-    volume_gradient: RefCell<Vec<f64>>,
 }
 
 impl ContactProblem {
@@ -153,15 +151,7 @@ impl<F: Potential> ContactProblem<F> {
             parameter("surface_tension", "chi", scale(groups.surface_tension, 1e-2)),
         ];
         let parameters = own.into_iter().chain(gas_and_material(shell.law)).collect();
-        let volume_gradient = RefCell::new(vec![0.0; mesh.unknowns()]);
-        Ok(ContactProblem {
-            mesh,
-            shell: *shell,
-            potential,
-            groups: *groups,
-            parameters,
-            volume_gradient,
-        })
+        Ok(ContactProblem { mesh, shell: *shell, potential, groups: *groups, parameters })
     }
 
     /// The unstressed sphere: an equilibrium when there is no film.
@@ -242,6 +232,7 @@ impl<F: Potential> ContactProblem<F> {
         Ok((c, Gas { ambient, surface_tension, exponent }))
     }
 
+    /// Hessian, and gradient unless `r` is empty.
     fn linearise_as<L: Membrane>(
         &self,
         law: &L,
@@ -250,13 +241,13 @@ impl<F: Potential> ContactProblem<F> {
         r: &mut [f64],
         j: &mut SymmetricBand,
     ) -> Result<(), EvalError> {
-        // r holds v, the gradient of the volume, until the rank-one term has been set
-        let volume = energy::volume_gradient(&self.mesh, u, r)?;
-        let excess = gas.excess(volume);
         j.set_zero();
-        j.set_rank_one(gas.stiffness(volume), r);
-        for r in r.iter_mut() {
-            *r *= -excess;
+        let (stiffness, v) = j.rank_one_mut();
+        let volume = energy::volume_gradient(&self.mesh, u, v)?;
+        *stiffness = gas.stiffness(volume);
+        let excess = gas.excess(volume);
+        for (r, v) in r.iter_mut().zip(v) {
+            *r = -excess * *v;
         }
         energy::add_linearisation(&self.mesh, u, law, &self.potential, c, excess, r, j)
     }
@@ -301,8 +292,7 @@ impl<F: Potential> Problem for ContactProblem<F> {
     }
 
     fn jacobian(&self, u: &[f64], p: &[f64], j: &mut SymmetricBand) -> Result<(), EvalError> {
-        let mut scratch = self.volume_gradient.borrow_mut();
-        self.linearise(u, p, &mut scratch, j)
+        self.linearise(u, p, &mut [], j)
     }
 
     fn linearise(

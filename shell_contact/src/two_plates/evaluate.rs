@@ -136,7 +136,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         })
     }
 
-    /// The gradient of the energy in `r` and its Hessian in `j`.
+    /// The gradient of the energy in `r`, unless that is empty, and its Hessian in `j`.
     pub(super) fn gradient_and_hessian(
         &self,
         u: &[f64],
@@ -145,12 +145,12 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         r: &mut [f64],
         j: &mut SymmetricBand,
     ) -> Result<(), EvalError> {
-        // r holds v, the gradient of the volume, until the rank-one term has been set
-        let half_volume = 0.5 * self.volume_gradient(u, r)?;
-        let excess = gas.excess(half_volume);
         j.set_zero();
-        j.set_rank_one(0.5 * gas.stiffness(half_volume), r);
-        r.iter_mut().for_each(|r| *r *= -excess);
+        let (stiffness, v) = j.rank_one_mut();
+        let half_volume = 0.5 * self.volume_gradient(u, v)?;
+        *stiffness = 0.5 * gas.stiffness(half_volume);
+        let excess = gas.excess(half_volume);
+        r.iter_mut().zip(v).for_each(|(r, v)| *r = -excess * *v);
         let ([top, bottom], (upper, lower)) = (self.halves(), &self.potentials);
         with_law!(c[0].material(self.shell.law), |law| {
             energy::add_linearisation(&top, u, &law, upper, &c[0], excess, r, j)?;

@@ -71,7 +71,6 @@ use crate::plate::Variable;
 use crate::spline::{Component, HALF_BANDWIDTH};
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
-use std::cell::RefCell;
 use std::f64::consts::FRAC_PI_2;
 
 /// Indices of the parameters in `p`.
@@ -174,7 +173,6 @@ pub struct TwoPlatesProblem<T: Potential = Film, B: Potential = Film> {
     groups: TwoPlatesGroups,
     parameters: Vec<Parameter>,
     mass: SymmetricBand,
-    volume_gradient: RefCell<Vec<f64>>,
 }
 
 impl TwoPlatesProblem {
@@ -223,9 +221,8 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
             // half of either: a step is as long as in the half model
             add_mass(&Half::new(&mesh, side), 0.5, &mut mass);
         }
-        let volume_gradient = RefCell::new(vec![0.0; unknowns]);
         let (shell, groups) = (*shell, *groups);
-        Ok(TwoPlatesProblem { mesh, shell, potentials, groups, parameters, mass, volume_gradient })
+        Ok(TwoPlatesProblem { mesh, shell, potentials, groups, parameters, mass })
     }
 
     /// The unstressed sphere: an equilibrium when there is no film.
@@ -370,8 +367,7 @@ impl<T: Potential, B: Potential> Problem for TwoPlatesProblem<T, B> {
     }
 
     fn jacobian(&self, u: &[f64], p: &[f64], j: &mut SymmetricBand) -> Result<(), EvalError> {
-        let mut scratch = self.volume_gradient.borrow_mut();
-        self.linearise(u, p, &mut scratch, j)
+        self.linearise(u, p, &mut [], j)
     }
 
     fn linearise(
