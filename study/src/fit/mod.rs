@@ -4,6 +4,7 @@ pub mod files;
 pub mod lab;
 pub mod plan;
 
+use crate::case::plain_name;
 use identify::data::read::LARGEST;
 use identify::data::{jpk, read};
 use identify::fit::Setup;
@@ -94,6 +95,12 @@ impl Source {
             None => file.to_string(),
             Some(number) => format!("{file}, curve {number}"),
         }
+    }
+
+    /// Its name among files: that of its file, and its number in a map.
+    pub fn stem(&self) -> String {
+        let name = plain_name(&self.path.file_stem().unwrap_or_default().to_string_lossy());
+        self.number.map_or(name.clone(), |number| format!("{name}-{number}"))
     }
 }
 
