@@ -103,12 +103,12 @@ pub(crate) use with_law;
 /// limit: differences in them may step over the ends of what a case may say.
 pub(crate) const POISSON_RATIO: &str = "Poisson's ratio is not between -1 and 1";
 
-/// A coated bubble between two plates, with the interaction potential `F`.
+/// A coated bubble between two plates, with a film's interaction potential.
 #[derive(Debug, Clone)]
-pub struct ContactProblem<F: Potential = Film> {
+pub struct ContactProblem {
     pub(crate) mesh: Mesh,
     pub(crate) shell: Shell,
-    pub(crate) potential: F,
+    pub(crate) potential: Film,
     groups: Dimensionless,
     parameters: Vec<Parameter>,
 }
@@ -127,7 +127,7 @@ impl ContactProblem {
     }
 }
 
-impl<F: Potential> ContactProblem<F> {
+impl ContactProblem {
     /// The problem with another potential.
     ///
     /// # Errors
@@ -136,8 +136,8 @@ impl<F: Potential> ContactProblem<F> {
         shell: &Shell,
         groups: &Dimensionless,
         mesh: Mesh,
-        potential: F,
-    ) -> Result<ContactProblem<F>, ParameterError> {
+        potential: Film,
+    ) -> Result<ContactProblem, ParameterError> {
         shell.validate()?;
         groups.validate()?;
         let scale = |value: f64, otherwise: f64| if value > 0.0 { value } else { otherwise };
@@ -167,7 +167,7 @@ impl<F: Potential> ContactProblem<F> {
     }
 
     /// The potential of the film.
-    pub fn film(&self) -> F {
+    pub fn film(&self) -> Film {
         self.potential
     }
 
@@ -271,7 +271,7 @@ impl<F: Potential> ContactProblem<F> {
     }
 }
 
-impl<F: Potential> Problem for ContactProblem<F> {
+impl Problem for ContactProblem {
     type Jacobian = SymmetricBand;
 
     fn dim(&self) -> usize {

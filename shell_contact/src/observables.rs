@@ -75,8 +75,8 @@ impl Observation {
     }
 }
 
-pub(crate) fn observe<F: Potential>(
-    problem: &ContactProblem<F>,
+pub(crate) fn observe(
+    problem: &ContactProblem,
     u: &[f64],
     p: &[f64],
 ) -> Result<Observation, EvalError> {
@@ -203,7 +203,7 @@ impl Profile {
     }
 }
 
-impl<F: Potential> ContactProblem<F> {
+impl ContactProblem {
     /// The meridian at `samples ≥ 2` equally spaced reference angles, pole and equator included.
     ///
     /// # Errors

@@ -32,11 +32,7 @@ pub struct Balance {
 ///
 /// # Errors
 /// When the state is not admissible.
-pub fn balances<F: Potential>(
-    problem: &ContactProblem<F>,
-    u: &[f64],
-    p: &[f64],
-) -> Result<Vec<Balance>, EvalError> {
+pub fn balances(problem: &ContactProblem, u: &[f64], p: &[f64]) -> Result<Vec<Balance>, EvalError> {
     let (c, gas) = problem.coefficients(u, p)?;
     let mesh = &problem.mesh;
     energy::admissible(mesh, u, problem.potential.wall(&c))?;

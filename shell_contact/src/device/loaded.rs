@@ -2,7 +2,6 @@
 
 use super::{Device, DeviceError, Loading};
 use crate::contact::{ContactProblem, parameter};
-use crate::film::{Film, Potential};
 use crate::observables::{self, Observation};
 use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::{Arrow, SymmetricBand};
@@ -27,18 +26,18 @@ const NAMES: [&str; observables::NAMES.len() + 1] = {
 ///
 /// The metric is that of the shell plus `dz0²`, lengths in `R0`.
 #[derive(Debug, Clone)]
-pub struct LoadedProblem<'c, F: Potential = Film> {
-    contact: &'c ContactProblem<F>,
+pub struct LoadedProblem<'c> {
+    contact: &'c ContactProblem,
     device: Device,
     parameters: Vec<Parameter>,
 }
 
-impl<'c, F: Potential> LoadedProblem<'c, F> {
+impl<'c> LoadedProblem<'c> {
     /// The shell under a device with a freedom of its own.
     ///
     /// # Errors
     /// For a grip, and for a stiffness that is not positive.
-    pub fn new(contact: &'c ContactProblem<F>, device: Device) -> Result<Self, DeviceError> {
+    pub fn new(contact: &'c ContactProblem, device: Device) -> Result<Self, DeviceError> {
         let own = |unit, scale| Parameter { name: device.parameter_name(), unit, scale };
         let first = match device {
             Device::Grip => return Err(DeviceError::Grip),
@@ -61,7 +60,7 @@ impl<'c, F: Potential> LoadedProblem<'c, F> {
     }
 
     /// The shell without its device.
-    pub fn contact(&self) -> &'c ContactProblem<F> {
+    pub fn contact(&self) -> &'c ContactProblem {
         self.contact
     }
 
@@ -83,7 +82,7 @@ impl<'c, F: Potential> LoadedProblem<'c, F> {
     fn inner<'x>(&self, x: &'x [f64], p: &[f64]) -> (&'x [f64], [f64; parameter::COUNT]) {
         let (u, z0) = x.split_at(self.contact.dim());
         let z0 = z0.first().copied().unwrap_or(f64::NAN);
-        (u, ContactProblem::<F>::with_plate(p, z0))
+        (u, ContactProblem::with_plate(p, z0))
     }
 
     /// `√k_b/2π`, which turns reported forces into those of the residual.
@@ -108,7 +107,7 @@ impl<'c, F: Potential> LoadedProblem<'c, F> {
     }
 }
 
-impl<F: Potential> Problem for LoadedProblem<'_, F> {
+impl Problem for LoadedProblem<'_> {
     type Jacobian = Arrow<SymmetricBand>;
 
     fn dim(&self) -> usize {
@@ -224,7 +223,7 @@ impl<F: Potential> Problem for LoadedProblem<'_, F> {
     }
 }
 
-impl<F: Potential> LoadedProblem<'_, F> {
+impl LoadedProblem<'_> {
     fn border(
         &self,
         u: &[f64],
@@ -240,7 +239,7 @@ impl<F: Potential> LoadedProblem<'_, F> {
     }
 }
 
-impl<F: Potential> Loading for LoadedProblem<'_, F> {
+impl Loading for LoadedProblem<'_> {
     fn device(&self) -> Device {
         self.device
     }

@@ -9,7 +9,7 @@ use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId};
 use std::f64::consts::PI;
 
-impl<F: Potential> ContactProblem<F> {
+impl ContactProblem {
     /// Total potential energy of the whole shell, in `χR0²`: the `energy_total` that is reported.
     ///
     /// # Errors
@@ -57,7 +57,7 @@ impl<F: Potential> ContactProblem<F> {
     }
 }
 
-impl<F: Potential> Loading for ContactProblem<F> {
+impl Loading for ContactProblem {
     fn device(&self) -> Device {
         Device::Grip
     }

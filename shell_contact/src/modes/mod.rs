@@ -214,9 +214,9 @@ impl<'a> AsymmetricModes<'a> {
     ///
     /// # Errors
     /// When the state is not admissible.
-    pub fn assemble<F: Potential>(
+    pub fn assemble(
         &mut self,
-        problem: &ContactProblem<F>,
+        problem: &ContactProblem,
         u: &[f64],
         p: &[f64],
     ) -> Result<(), EvalError> {

@@ -21,7 +21,7 @@ use std::f64::consts::PI;
 const PLATES_CROSS: &str = "the plates cross: their distance is not positive";
 const POLES_MEET: &str = "the dimples meet: the poles cross each other";
 
-impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
+impl TwoPlatesProblem {
     /// The upper half and the lower.
     pub(crate) fn halves(&self) -> [Half<'_>; 2] {
         Side::BOTH.map(|side| Half::new(&self.mesh, side))

@@ -166,10 +166,10 @@ impl TwoPlatesGroups {
 
 /// A coated bubble between two plates at `±z0`, free to move between them.
 #[derive(Debug, Clone)]
-pub struct TwoPlatesProblem<T: Potential = Film, B: Potential = Film> {
+pub struct TwoPlatesProblem {
     mesh: Mesh,
     pub(crate) shell: Shell,
-    pub(crate) potentials: (T, B),
+    pub(crate) potentials: (Film, Film),
     groups: TwoPlatesGroups,
     parameters: Vec<Parameter>,
     mass: SymmetricBand,
@@ -189,7 +189,7 @@ impl TwoPlatesProblem {
     }
 }
 
-impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
+impl TwoPlatesProblem {
     /// The problem with other potentials, of the upper plate and of the lower.
     ///
     /// # Errors
@@ -198,8 +198,8 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         shell: &Shell,
         groups: &TwoPlatesGroups,
         mesh: Mesh,
-        potentials: (T, B),
-    ) -> Result<TwoPlatesProblem<T, B>, ParameterError> {
+        potentials: (Film, Film),
+    ) -> Result<TwoPlatesProblem, ParameterError> {
         shell.validate()?;
         groups.validate()?;
         let scale = |value: f64, otherwise: f64| if value > 0.0 { value } else { otherwise };
@@ -346,7 +346,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     }
 }
 
-impl<T: Potential, B: Potential> Problem for TwoPlatesProblem<T, B> {
+impl Problem for TwoPlatesProblem {
     type Jacobian = SymmetricBand;
 
     fn dim(&self) -> usize {

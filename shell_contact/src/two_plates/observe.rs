@@ -4,7 +4,6 @@ use super::{Half, Side, TwoPlatesProblem, parameter};
 use crate::contact::with_law;
 use crate::density::Coefficients;
 use crate::energy;
-use crate::film::Potential;
 use crate::gas::Gas;
 use crate::half::HalfMeridian;
 use crate::membrane::tensions;
@@ -65,7 +64,7 @@ impl TwoPlatesObservation {
     }
 }
 
-impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
+impl TwoPlatesProblem {
     /// Everything that is reported of a state.
     ///
     /// # Errors
