@@ -86,6 +86,39 @@ fn a_case_without_a_fold_is_searched() {
     assert!(cusp[0]["force"].as_f64().unwrap() < 0.0);
 }
 
+/// Folds over gas and material, against branches of cases that say the same.
+#[test]
+fn folds_over_gas_and_material_are_those_of_cases() {
+    let place = tempfile::tempdir().unwrap();
+    let run = |arguments: &[&str]| {
+        let output = arclen(place.path(), &[arguments, &["--elements", "60"]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        output.stdout
+    };
+    for (key, table, from, to) in [
+        ("gas_exponent", "dimensionless", 0.8, 1.4),
+        ("poisson", "shell", 0.3, 0.5),
+        ("b", "shell", 0.2, 1.0),
+    ] {
+        let (from, to) = (format!("map.from={from}"), format!("map.to={to}"));
+        run(&["map", "fig16", "--over", key, "--set", &from, "--set", &to, "--out", key]);
+        let csv = fs::read_to_string(place.path().join(key).join("fold-0.csv")).unwrap();
+        assert!(csv.starts_with(&format!("point,z0,{key},")));
+        let last: Vec<&str> = csv.lines().last().unwrap().split(',').collect();
+        let (mapped, value): (f64, &str) = (last[1].parse().unwrap(), last[2]);
+        let changed = format!("{table}.{key}={value}");
+        let trace = run(&["trace", "fig16", "--set", &changed, "--json"]);
+        let trace: Value = serde_json::from_slice(&trace).unwrap();
+        let events = trace["events"].as_array().unwrap();
+        let folds: Vec<f64> = events
+            .iter()
+            .filter(|e| e["kind"] == "fold")
+            .filter_map(|e| e["z0"].as_f64())
+            .collect();
+        assert!(folds.iter().any(|fold| (fold - mapped).abs() < 1e-8), "{key}: {mapped} {folds:?}");
+    }
+}
+
 #[test]
 fn a_map_cut_short_keeps_its_points() {
     let place = tempfile::tempdir().unwrap();
@@ -104,6 +137,11 @@ fn wrong_keys_are_refused_with_the_right_ones() {
         (vec!["fig16", "--over", "adhesoin"], vec!["did you mean adhesion?", "surface_tension"]),
         (vec!["fig16", "--over", "surface_tension"], vec!["map.from and map.to"]),
         (vec!["fig16", "--over", "adhesion", "--set", "map.from=0.1"], vec!["is not between"]),
+        (vec!["fig12", "--over", "b"], vec!["a shell of the law hooke has no such parameter"]),
+        (
+            vec!["fig16", "--over", "b", "--set", "map.to=2"],
+            vec!["map.to = 2: b must be from 0 to 1"],
+        ),
         (vec!["plp", "--over", "p"], vec!["plp has no parameter besides p"]),
         (vec!["pressurised-sphere", "--over", "poisson"], vec!["allowed here: bending"]),
         (vec!["fig16", "--over", "adhesion", "--set", "map.form=1"], vec!["map.form", "from"]),

@@ -2,6 +2,8 @@
 
 use crate::linalg::AnyMatrix;
 use crate::problem::{EvalError, ParamId, Parameter, Problem, SpecialPoints, Stability};
+use std::ops::Deref;
+use std::rc::Rc;
 
 /// What a [`Problem`] does, whatever its matrices are.
 pub(crate) trait AnyProblem {
@@ -55,6 +57,38 @@ pub(crate) trait AnyProblem {
 
 /// A problem of unknown type.
 pub(crate) type DynProblem<'a> = dyn AnyProblem + 'a;
+
+/// A problem that somebody else keeps, or one that is kept here.
+#[derive(Clone)]
+pub(crate) enum Held<'a> {
+    /// Of somebody else.
+    Borrowed(&'a DynProblem<'a>),
+    /// Kept as long as anybody has it.
+    Shared(Rc<DynProblem<'a>>),
+}
+
+impl<'a> Deref for Held<'a> {
+    type Target = DynProblem<'a>;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Held::Borrowed(problem) => *problem,
+            Held::Shared(problem) => &**problem,
+        }
+    }
+}
+
+impl<'a, P: AnyProblem + 'a> From<&'a P> for Held<'a> {
+    fn from(problem: &'a P) -> Self {
+        Held::Borrowed(problem)
+    }
+}
+
+impl<'a> From<&'a DynProblem<'a>> for Held<'a> {
+    fn from(problem: &'a DynProblem<'a>) -> Self {
+        Held::Borrowed(problem)
+    }
+}
 
 impl<P: Problem> AnyProblem for P {
     fn dim(&self) -> usize {

@@ -3,7 +3,7 @@
 use crate::linalg::{Dense, Matrix};
 use crate::problem::{EvalError, ParamId, Parameter, Problem, Stability, check_finite};
 use num_dual::{Dual64, DualNum};
-use std::cell::RefCell;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A number on which a residual is evaluated: `f64`, or one that carries derivatives along.
 pub trait Number: DualNum<Primitive = f64> + Copy {}
@@ -59,7 +59,7 @@ pub trait Residual {
 /// ```
 pub struct DualProblem<R> {
     residual: R,
-    scratch: RefCell<Scratch>,
+    scratch: Mutex<Scratch>,
 }
 
 struct Scratch {
@@ -80,12 +80,17 @@ impl<R: Residual> DualProblem<R> {
             r: vec![zero; n],
             observed: vec![zero; residual.observables().len()],
         };
-        DualProblem { residual, scratch: RefCell::new(scratch) }
+        DualProblem { residual, scratch: Mutex::new(scratch) }
     }
 
     /// The residual.
     pub fn residual(&self) -> &R {
         &self.residual
+    }
+
+    /// Work space, which is filled before it is read: what a thread that panicked left in it does not matter.
+    fn scratch(&self) -> MutexGuard<'_, Scratch> {
+        self.scratch.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -132,7 +137,7 @@ impl<R: Residual> Problem for DualProblem<R> {
     }
 
     fn jacobian(&self, u: &[f64], p: &[f64], j: &mut Dense) -> Result<(), EvalError> {
-        let mut scratch = self.scratch.borrow_mut();
+        let mut scratch = self.scratch();
         j.set_zero();
         for k in 0..u.len() {
             scratch.place(u, p, unit(k), |_| 0.0);
@@ -153,7 +158,7 @@ impl<R: Residual> Problem for DualProblem<R> {
         which: ParamId,
         out: &mut [f64],
     ) -> Result<(), EvalError> {
-        let mut scratch = self.scratch.borrow_mut();
+        let mut scratch = self.scratch();
         scratch.place(u, p, |_| 0.0, unit(which.0));
         let Scratch { u, p, r, .. } = &mut *scratch;
         self.residual.evaluate(u, p, r);
@@ -183,7 +188,7 @@ impl<R: Residual> Problem for DualProblem<R> {
         du: &[f64],
         dp: f64,
     ) -> Result<Option<f64>, EvalError> {
-        let mut scratch = self.scratch.borrow_mut();
+        let mut scratch = self.scratch();
         scratch.place(u, p, |i| du[i], |i| if i == which.0 { dp } else { 0.0 });
         let Scratch { u, p, observed, .. } = &mut *scratch;
         self.residual.observe(u, p, observed);

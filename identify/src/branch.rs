@@ -15,7 +15,7 @@ use crate::error::ModelError;
 use crate::parameters::{Key, LawName, Parameters};
 use continuation::{Matrix, ParamId, Problem, Settings, Tracer};
 use shell_contact::contact::parameter;
-use shell_contact::{ContactProblem, Dimensionless, Mesh, Resolution, Shell};
+use shell_contact::{ContactProblem, Dimensionless, Mesh, Resolution};
 use std::f64::consts::PI;
 
 /// What the branch depends on, dimensionless.
@@ -165,7 +165,7 @@ pub fn trace(
     let groups = groups(p);
     let mesh = Mesh::uniform(effort.elements)?;
     let problem = ContactProblem::new(&shell, &groups, mesh)?;
-    let around = Around::new(&problem, &shell, &groups, wanted)?;
+    let around = Around::new(&problem, wanted);
     let settings = Settings {
         target: Some(span.end),
         max_points: effort.points,
@@ -230,49 +230,29 @@ struct State {
     tangent: Vec<f64>,
 }
 
-/// The problem, and its neighbours in the constants that are no parameters of it.
+/// The problem, and what the force is to be differentiated by.
 struct Around<'a> {
     problem: &'a ContactProblem,
-    wanted: Vec<Group>,
-    // (group, problem a little above, a little below, their distance)
-    neighbours: Vec<(Group, ContactProblem, ContactProblem, f64)>,
+    /// Each with its parameter, and that parameter's slope in the group.
+    wanted: Vec<(Group, ParamId, f64)>,
 }
 
-/// Relative step of the differences in constants that the residual has no derivative for. It is smooth in
-/// them (rational or exponential), and evaluated at one state: the error is 1e-10 of the residual.
-const STEP: f64 = 1e-5;
-
 impl<'a> Around<'a> {
-    fn new(
-        problem: &'a ContactProblem,
-        shell: &Shell,
-        groups: &Dimensionless,
-        wanted: &[Group],
-    ) -> Result<Self, ModelError> {
-        let mut neighbours = Vec::new();
-        for &group in wanted {
-            let (value, least, most) = match group {
-                Group::GasExponent => (groups.gas_exponent, 0.0, f64::INFINITY),
-                Group::Poisson => (shell.poisson, -1.0 + STEP, 0.999),
-                Group::MooneyB => match shell.law {
-                    shell_contact::Law::MooneyRivlin { b } => (b, 0.0, 1.0),
-                    _ => continue,
-                },
-                _ => continue,
-            };
-            let (high, low) = ((value + STEP).min(most), (value - STEP).max(least));
-            let at = |value: f64| {
-                let (mut shell, mut groups) = (*shell, *groups);
-                match group {
-                    Group::GasExponent => groups.gas_exponent = value,
-                    Group::Poisson => shell.poisson = value,
-                    _ => shell.law = shell_contact::Law::MooneyRivlin { b: value },
-                }
-                ContactProblem::new(&shell, &groups, problem.mesh().clone())
-            };
-            neighbours.push((group, at(high)?, at(low)?, high - low));
-        }
-        Ok(Around { problem, wanted: wanted.to_vec(), neighbours })
+    fn new(problem: &'a ContactProblem, wanted: &[Group]) -> Self {
+        let g = problem.groups();
+        let of = |group: Group| match group {
+            Group::Bending => (parameter::BENDING, g.bending),
+            Group::Pressure => (parameter::PRESSURE, g.pressure),
+            Group::Adhesion => (parameter::ADHESION, g.adhesion),
+            Group::Film => (parameter::FILM, g.film),
+            Group::SurfaceTension => (parameter::SURFACE_TENSION, 1.0),
+            Group::GasExponent => (parameter::GAS_EXPONENT, 1.0),
+            Group::Poisson => (parameter::POISSON, 1.0),
+            Group::MooneyB => (parameter::B, 1.0),
+        };
+        let wanted = wanted.iter().map(|&group| (group, of(group)));
+        let known = wanted.filter(|(_, (which, _))| which.0 < problem.parameters().len());
+        Around { problem, wanted: known.map(|(group, (which, by))| (group, which, by)).collect() }
     }
 
     /// The point at a state: arclength and `dz0/ds` are given.
@@ -310,25 +290,9 @@ impl<'a> Around<'a> {
         };
         let g = problem.groups();
         let factor = 2.0 * PI / g.bending.sqrt();
-        for &group in &self.wanted {
-            let (direct, scale) = match group {
-                Group::Bending => (Some(parameter::BENDING), g.bending),
-                Group::Pressure => (Some(parameter::PRESSURE), g.pressure),
-                Group::Adhesion => (Some(parameter::ADHESION), g.adhesion),
-                Group::Film => (Some(parameter::FILM), g.film),
-                Group::SurfaceTension => (Some(parameter::SURFACE_TENSION), 1.0),
-                _ => (None, 1.0),
-            };
-            let at_fixed_state = match direct {
-                Some(which) => {
-                    problem.parameter_derivative(u, at, which, &mut work.by_parameter)?;
-                    slope(which, &work.zero, scale)?
-                }
-                None => {
-                    self.difference(group, u, at, work)?;
-                    0.0
-                }
-            };
+        for &(group, which, scale) in &self.wanted {
+            problem.parameter_derivative(u, at, which, &mut work.by_parameter)?;
+            let at_fixed_state = slope(which, &work.zero, scale)?;
             let along: f64 = work.tangent.iter().zip(&work.by_parameter).map(|(a, b)| a * b).sum();
             node.by_group[group as usize] = dz * (at_fixed_state - factor * scale * along);
         }
@@ -407,26 +371,6 @@ impl<'a> Around<'a> {
             }
         }
         None
-    }
-
-    /// `R_q` at a fixed state by differences of the residual.
-    fn difference(
-        &self,
-        group: Group,
-        u: &[f64],
-        at: &[f64],
-        work: &mut Work,
-    ) -> Result<(), ModelError> {
-        work.by_parameter.fill(0.0);
-        let Some((_, high, low, width)) = self.neighbours.iter().find(|n| n.0 == group) else {
-            return Ok(());
-        };
-        high.residual(u, at, &mut work.by_parameter)?;
-        low.residual(u, at, &mut work.residual)?;
-        for (out, low) in work.by_parameter.iter_mut().zip(&work.residual) {
-            *out = (*out - low) / width;
-        }
-        Ok(())
     }
 }
 

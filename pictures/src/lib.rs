@@ -20,6 +20,7 @@ mod palette;
 mod path;
 mod phase;
 mod physical;
+pub mod results;
 mod sheet;
 mod text;
 

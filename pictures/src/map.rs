@@ -3,7 +3,7 @@
 use super::chart::DrawError;
 use super::draw::{self, DISTANCE};
 use super::heading::titled;
-use study::case::{ProblemCase, ResolvedCase};
+use study::case::{Law, ProblemCase, ResolvedCase};
 use study::record::MapResult;
 use study::record::view::{Curve, Mark};
 
@@ -52,6 +52,9 @@ pub fn draw_map(case: &ResolvedCase, result: &MapResult) -> Result<String, DrawE
         "pressure" => "ambient pressure P_{A}R₀/χ",
         "film" => "film length δ_{A}/R₀",
         "surface_tension" => "surface tension γ_{BW}/χ",
+        "gas_exponent" => "gas exponent γ",
+        "poisson" => "Poisson's ratio ν",
+        "b" => "share b of Mooney-Rivlin's law",
         "moment" => "moment at the ring m/(χR₀²)",
         other => other,
     };
@@ -68,6 +71,12 @@ fn value(case: &ResolvedCase, key: &str) -> Option<f64> {
             "pressure" => Some(contact.groups.pressure),
             "film" => Some(contact.groups.film),
             "surface_tension" => Some(contact.groups.surface_tension),
+            "gas_exponent" => Some(contact.groups.gas_exponent),
+            "poisson" => Some(contact.shell.poisson),
+            "b" => match contact.shell.law {
+                Law::MooneyRivlin { b } => Some(b),
+                Law::Hooke | Law::Skalak => None,
+            },
             _ => None,
         },
         ProblemCase::RingLoad(ring) => match key {

@@ -24,7 +24,6 @@ use crate::visit::hand;
 use crate::{Allowed, Constant, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
-use std::cell::RefCell;
 use std::f64::consts::PI;
 
 /// See the module. Parameters: load, rise, asymmetry of the load.
@@ -39,7 +38,6 @@ pub struct ShallowArch {
     m1: f64,
     /// `∂⁴`.
     bending: SymmetricBand,
-    scratch: RefCell<Vec<f64>>,
 }
 
 const PARAMETERS: [Parameter; 3] = [
@@ -67,8 +65,7 @@ impl ShallowArch {
         }
         let sine = [1.0, 2.0].map(|k| (0..n).map(|i| (k * grid.x(i)).sin()).collect());
         let m1 = (2.0 / grid.h * (0.5 * grid.h).sin()).powi(2);
-        let scratch = RefCell::new(vec![0.0; n]);
-        ShallowArch { grid, weight: 2.0 * grid.h / PI, sine, m1, bending, scratch }
+        ShallowArch { grid, weight: 2.0 * grid.h / PI, sine, m1, bending }
     }
 
     /// The unloaded arch.
@@ -110,12 +107,16 @@ impl Problem for ShallowArch {
         let [load, rise, asymmetry] = [p[0], p[1], p[2]];
         let thrust = self.thrust(u, rise);
         let [one, two] = &self.sine;
-        let mut bend = self.scratch.borrow_mut();
-        for (i, bend) in bend.iter_mut().enumerate() {
-            *bend = self.curvature(u, i) - self.m1 * rise * one[i];
-        }
+        // bending moments of three neighbouring nodes; none beyond the ends
+        let n = self.grid.n;
+        let moment =
+            |i: usize| if i < n { self.curvature(u, i) - self.m1 * rise * one[i] } else { 0.0 };
+        let (mut before, mut here) = (0.0, moment(0));
         for (i, r) in r.iter_mut().enumerate() {
-            let elastic = self.curvature(&bend, i) - thrust * self.curvature(u, i);
+            let after = moment(i + 1);
+            let bend = self.grid.second_of(before, here, after);
+            (before, here) = (here, after);
+            let elastic = -bend - thrust * self.curvature(u, i);
             *r = self.weight * (elastic + load * (one[i] + asymmetry * two[i]));
         }
         Ok(())
@@ -133,11 +134,11 @@ impl Problem for ShallowArch {
                 *below += thrust * side;
             }
         }
-        let mut v = self.scratch.borrow_mut();
+        let (factor, v) = j.rank_one_mut();
+        *factor = 2.0 * self.weight * self.weight;
         for (i, v) in v.iter_mut().enumerate() {
             *v = self.curvature(u, i);
         }
-        j.set_rank_one(2.0 * self.weight * self.weight, &v);
         Ok(())
     }
 

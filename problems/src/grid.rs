@@ -28,7 +28,12 @@ impl Grid {
     /// `∂²u` at interior node `i`, from differences: a smooth `u` loses no digits to the spacing.
     pub(crate) fn second(&self, u: &[f64], i: usize, end: f64) -> f64 {
         let (before, after) = self.neighbours(u, i, end);
-        ((after - u[i]) - (u[i] - before)) / (self.h * self.h)
+        self.second_of(before, u[i], after)
+    }
+
+    /// The same from three neighbouring values.
+    pub(crate) fn second_of(&self, before: f64, here: f64, after: f64) -> f64 {
+        ((after - here) - (here - before)) / (self.h * self.h)
     }
 
     /// Value in the middle: of the node there, else of the cubic through the four around it.

@@ -148,6 +148,7 @@ impl PressurisedSphere {
         Coefficients {
             bending: p[1],
             poisson: self.poisson,
+            b: 0.0,
             surface_tension: 0.0,
             adhesion: 0.0,
             film: 1.0,

@@ -18,7 +18,6 @@ use crate::visit::hand;
 use crate::{Allowed, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability, Watch};
-use std::cell::RefCell;
 use std::f64::consts::PI;
 
 /// Half width `M` of the difference formula.
@@ -34,8 +33,6 @@ pub struct Snaking {
     stencil: [f64; HALF_WIDTH + 1],
     /// `W(1 + ∂²)²`.
     operator: SymmetricBand,
-    /// `(1 + ∂²)u`.
-    scratch: RefCell<Vec<f64>>,
 }
 
 const PARAMETERS: [Parameter; 1] = [Parameter { name: "r", unit: "", scale: 0.1 }];
@@ -82,21 +79,22 @@ impl Snaking {
                 }
             }
         }
-        Snaking { h, weights, stencil: c, operator, scratch: RefCell::new(vec![0.0; n]) }
+        Snaking { h, weights, stencil: c, operator }
     }
 
     /// `(1 + ∂²)u` at node `i`, from differences: a smooth `u` loses no digits to the spacing.
-    fn helmholtz(&self, u: &[f64], i: usize) -> f64 {
-        let last = u.len() - 1;
-        let mut sum = u[i];
+    #[inline]
+    fn helmholtz(&self, u: impl Fn(usize) -> f64, i: usize) -> f64 {
+        let last = self.weights.len() - 1;
+        let mut sum = u(i);
         for k in (1..=HALF_WIDTH).rev() {
             let (left, right) = if i >= k && i + k <= last {
-                (u[i - k], u[i + k])
+                (u(i - k), u(i + k))
             } else {
                 let (i, k) = (i as isize, k as isize);
-                (u[reflect(i - k, last)], u[reflect(i + k, last)])
+                (u(reflect(i - k, last)), u(reflect(i + k, last)))
             };
-            sum += self.stencil[k] * ((right - u[i]) + (left - u[i]));
+            sum += self.stencil[k] * ((right - u(i)) + (left - u(i)));
         }
         sum
     }
@@ -125,14 +123,19 @@ impl Problem for Snaking {
     }
 
     fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
-        let mut v = self.scratch.borrow_mut();
-        for (i, v) in v.iter_mut().enumerate() {
-            *v = self.helmholtz(u, i);
-        }
         for (i, r) in r.iter_mut().enumerate() {
-            let square = u[i] * u[i];
-            let growth = u[i] * (p[0] + square * (2.0 - square));
-            *r = self.weights[i] * (growth - self.helmholtz(&v, i));
+            *r = self.helmholtz(|j| u[j], i);
+        }
+        // (1 + ∂²)u, of which `behind` keeps the values that r has lost, the nearest first
+        let mut behind = [0.0; HALF_WIDTH];
+        for (i, u) in u.iter().enumerate() {
+            let v = |j: usize| if j >= i { r[j] } else { behind[i - j - 1] };
+            let applied = self.helmholtz(v, i);
+            behind.rotate_right(1);
+            behind[0] = r[i];
+            let square = u * u;
+            let growth = u * (p[0] + square * (2.0 - square));
+            r[i] = self.weights[i] * (growth - applied);
         }
         Ok(())
     }

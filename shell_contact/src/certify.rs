@@ -5,11 +5,11 @@
 //! parameter derivatives are all mixed derivatives of this one function.
 
 use crate::bending;
-use crate::contact::{ContactProblem, parameter, with_law};
+use crate::contact::{ContactProblem, parameter};
 use crate::dual::{close, real};
 use crate::film::{Film, Potential, check};
 use crate::gas::REST_VOLUME;
-use crate::membrane::Membrane;
+use crate::membrane;
 use crate::meridian::Mesh;
 use crate::params::{Dimensionless, Law, Shell};
 use crate::quadrature::gauss_legendre;
@@ -41,11 +41,15 @@ pub(crate) fn state(n: usize, seed: f64, size: f64) -> Vec<f64> {
 }
 
 /// The total energy at `u + ε1 a + ε2 b` and dual parameters.
-pub(crate) fn energy(problem: &ContactProblem, u: &[f64], a: &[f64], b: &[f64], p: [H; 6]) -> H {
+pub(crate) fn energy(
+    problem: &ContactProblem,
+    u: &[f64],
+    a: &[f64],
+    b: &[f64],
+    p: [H; parameter::COUNT],
+) -> H {
     let mesh = problem.mesh();
-    let [plate, adhesion, kb, ambient, length, tension] = p;
-    let nu = problem.shell().poisson;
-    let exponent = problem.groups().gas_exponent;
+    let [plate, adhesion, kb, ambient, length, tension, exponent, nu, share] = p;
     let mut total = real(0.0);
     let mut volume = real(0.0);
     for e in 0..mesh.elements() {
@@ -61,18 +65,23 @@ pub(crate) fn energy(problem: &ContactProblem, u: &[f64], a: &[f64], b: &[f64], 
             let (z, z1, z2) = (w(0) + cos, w(1) - sin, w(2) - cos);
             let q = r1 * r1 + z1 * z1;
             let hoop = r * (1.0 / sin);
-            let membrane = with_law!(problem, |law| law.energy(q, hoop * hoop));
+            let membrane = membrane::check::energy(problem.shell.law, [q, hoop * hoop], nu, share);
             let (ks, kphi) = bending::strains(r1, r2, z1, z2, real(1.0 / sin));
-            let bend = kb * bending::energy(ks, kphi, nu);
+            let bend = kb * (ks * ks + nu * ks * kphi * 2.0 + kphi * kphi) * 0.5;
             let film = problem.potential.energy(plate - z, adhesion, length);
             total += (membrane + bend) * (weight * sin) + (film + tension) * r * q.sqrt() * weight;
             volume += -(r * r * z1) * (0.5 * weight);
         }
     }
     let rest = ambient + tension * 2.0;
-    let work = ((volume.recip() * REST_VOLUME).powf(exponent - 1.0) - 1.0)
-        * (REST_VOLUME / (exponent - 1.0));
+    let power = exponent - 1.0;
+    let work = (((volume.recip() * REST_VOLUME).ln() * power).exp() - 1.0) * REST_VOLUME / power;
     total + ambient * (volume - REST_VOLUME) + rest * work
+}
+
+/// The values of parameters as dual numbers; a law without `b` does not read the last.
+pub(crate) fn duals(p: &[f64]) -> [H; parameter::COUNT] {
+    std::array::from_fn(|k| real(p.get(k).copied().unwrap_or(0.0)))
 }
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -97,7 +106,7 @@ fn residual_hessian_and_parameter_derivatives_agree_with_dual_numbers() {
             }
             let mut again = problem.new_jacobian();
             problem.jacobian(&u, &p, &mut again).unwrap();
-            let plain: [H; 6] = std::array::from_fn(|i| real(p[i]));
+            let plain = duals(&p);
             for seed in 0..4 {
                 let a = state(n, 1.0 + f64::from(seed), 1.0);
                 let b = state(n, 2.7 * f64::from(seed), 1.0);
@@ -109,7 +118,7 @@ fn residual_hessian_and_parameter_derivatives_agree_with_dual_numbers() {
                 close(dot(&a, &jb), e.eps1eps2, 1e-12, 1e-14 * size(&a, &jb));
                 again.mul(&b, &mut alone);
                 close(dot(&a, &alone), dot(&a, &jb), 1e-13, 1e-14 * size(&a, &jb));
-                for k in 0..parameter::COUNT {
+                for k in 0..problem.parameters().len() {
                     let mut dual = plain;
                     dual[k].eps2 = 1.0;
                     let e = energy(&problem, &u, &a, &vec![0.0; n], dual);
@@ -133,7 +142,7 @@ fn slopes_agree(film: Film) {
     let u = state(n, 0.3, 0.01);
     let du = state(n, 1.9, 1.0);
     let p = problem.parameters_at(1.07);
-    for which in 0..parameter::COUNT {
+    for which in 0..problem.parameters().len() {
         let step = |t: f64| {
             let moved: Vec<f64> = u.iter().zip(&du).map(|(u, d)| u + t * d).collect();
             let mut p = p.clone();
@@ -179,8 +188,13 @@ fn is_gradient(film: Film) {
     close(4.0 * std::f64::consts::PI * dot(&r, &du), difference, 1e-8, 0.0);
 }
 
+/// Threads may share every problem of a shell.
 #[test]
-fn problem_can_be_sent_to_another_thread() {
-    fn send<T: Send>(_: &T) {}
-    send(&problem(Law::Hooke, 4));
+fn problems_are_send_and_sync() {
+    fn shared<T: Send + Sync>() {}
+    shared::<ContactProblem>();
+    shared::<crate::device::LoadedProblem<'_>>();
+    shared::<crate::two_plates::TwoPlatesProblem>();
+    shared::<crate::two_plates::SupportedProblem<'_>>();
+    shared::<crate::ring_load::RingLoadProblem>();
 }

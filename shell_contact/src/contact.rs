@@ -8,16 +8,15 @@ use crate::density::{self, Coefficients};
 use crate::energy;
 use crate::film::{Film, Potential};
 use crate::gas::Gas;
-use crate::membrane::Membrane;
+use crate::membrane::{Constant, Membrane};
 use crate::meridian::Mesh;
 use crate::observables::{self, Observation};
-use crate::params::{Dimensionless, ParameterError, Shell};
+use crate::params::{Dimensionless, Law, ParameterError, Shell};
 use crate::plate::{self, Variable};
 use crate::scalar::{Lanes, Scalar};
 use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
-use std::cell::RefCell;
 use std::f64::consts::PI;
 
 /// Indices of the parameters in `p`.
@@ -36,8 +35,14 @@ pub mod parameter {
     pub const FILM: ParamId = ParamId(4);
     /// Surface tension `γ_BW/χ`.
     pub const SURFACE_TENSION: ParamId = ParamId(5);
-    /// How many there are.
-    pub const COUNT: usize = 6;
+    /// Exponent of the gas `γ`.
+    pub const GAS_EXPONENT: ParamId = ParamId(6);
+    /// Poisson's ratio `ν`.
+    pub const POISSON: ParamId = ParamId(7);
+    /// The share `b` of Mooney and Rivlin's law, for a shell of that law.
+    pub const B: ParamId = ParamId(8);
+    /// How many there are at most.
+    pub const COUNT: usize = 9;
 }
 
 /// What of the plate's film a parameter is, if it is.
@@ -50,12 +55,35 @@ pub(crate) fn variable(which: ParamId) -> Option<Variable> {
     }
 }
 
-/// Runs `$body` with `$law` bound to the problem's membrane law as its own type.
+/// What constant of the material a parameter is, if it is.
+pub(crate) fn constant(which: ParamId) -> Option<Constant> {
+    match which {
+        parameter::POISSON => Some(Constant::Poisson),
+        parameter::B => Some(Constant::MooneyB),
+        _ => None,
+    }
+}
+
+/// The parameters of gas and material, which problems with plates have in common; `b` is the last, and
+/// is there for a law that has it.
+pub(crate) fn gas_and_material(law: Law) -> impl Iterator<Item = Parameter> {
+    let parameter = |name, scale| Parameter { name, unit: "", scale };
+    let b = law.b().map(|_| parameter("b", 1.0));
+    [parameter("gas_exponent", 1.0), parameter("poisson", 0.5)].into_iter().chain(b)
+}
+
+/// Their values in a case.
+pub(crate) fn gas_and_material_of(exponent: f64, shell: &Shell) -> impl Iterator<Item = f64> {
+    [exponent, shell.poisson].into_iter().chain(shell.law.b())
+}
+
+/// Runs `$body` with `$law` bound to the membrane law of a [`Shell`] as its own type.
 macro_rules! with_law {
-    ($problem:expr, |$law:ident| $body:expr) => {
-        match $problem.shell.law {
+    ($shell:expr, |$law:ident| $body:expr) => {{
+        let shell: $crate::params::Shell = $shell;
+        match shell.law {
             $crate::params::Law::Hooke => {
-                let $law = $crate::membrane::Hooke { poisson: $problem.shell.poisson };
+                let $law = $crate::membrane::Hooke { poisson: shell.poisson };
                 $body
             }
             $crate::params::Law::MooneyRivlin { b } => {
@@ -63,23 +91,26 @@ macro_rules! with_law {
                 $body
             }
             $crate::params::Law::Skalak => {
-                let $law = $crate::membrane::Skalak { poisson: $problem.shell.poisson };
+                let $law = $crate::membrane::Skalak { poisson: shell.poisson };
                 $body
             }
         }
-    };
+    }};
 }
 pub(crate) use with_law;
 
-/// A coated bubble between two plates, with the interaction potential `F`.
+/// Beyond it the bending energy has no lower bound, nor has a membrane's. Exponents and `b` have no such
+/// limit: differences in them may step over the ends of what a case may say.
+pub(crate) const POISSON_RATIO: &str = "Poisson's ratio is not between -1 and 1";
+
+/// A coated bubble between two plates, with a film's interaction potential.
 #[derive(Debug, Clone)]
-pub struct ContactProblem<F: Potential = Film> {
+pub struct ContactProblem {
     pub(crate) mesh: Mesh,
     pub(crate) shell: Shell,
-    pub(crate) potential: F,
+    pub(crate) potential: Film,
     groups: Dimensionless,
-    parameters: [Parameter; parameter::COUNT],
-    volume_gradient: RefCell<Vec<f64>>,
+    parameters: Vec<Parameter>,
 }
 
 impl ContactProblem {
@@ -96,7 +127,7 @@ impl ContactProblem {
     }
 }
 
-impl<F: Potential> ContactProblem<F> {
+impl ContactProblem {
     /// The problem with another potential.
     ///
     /// # Errors
@@ -105,13 +136,13 @@ impl<F: Potential> ContactProblem<F> {
         shell: &Shell,
         groups: &Dimensionless,
         mesh: Mesh,
-        potential: F,
-    ) -> Result<ContactProblem<F>, ParameterError> {
+        potential: Film,
+    ) -> Result<ContactProblem, ParameterError> {
         shell.validate()?;
         groups.validate()?;
         let scale = |value: f64, otherwise: f64| if value > 0.0 { value } else { otherwise };
         let parameter = |name, unit, scale| Parameter { name, unit, scale };
-        let parameters = [
+        let own = [
             parameter("z0", "R0", 1.0),
             parameter("adhesion", "chi", scale(groups.adhesion, 1e-3)),
             parameter("bending", "chi R0^2", groups.bending),
@@ -119,15 +150,8 @@ impl<F: Potential> ContactProblem<F> {
             parameter("film", "R0", groups.film),
             parameter("surface_tension", "chi", scale(groups.surface_tension, 1e-2)),
         ];
-        let volume_gradient = RefCell::new(vec![0.0; mesh.unknowns()]);
-        Ok(ContactProblem {
-            mesh,
-            shell: *shell,
-            potential,
-            groups: *groups,
-            parameters,
-            volume_gradient,
-        })
+        let parameters = own.into_iter().chain(gas_and_material(shell.law)).collect();
+        Ok(ContactProblem { mesh, shell: *shell, potential, groups: *groups, parameters })
     }
 
     /// The unstressed sphere: an equilibrium when there is no film.
@@ -138,11 +162,12 @@ impl<F: Potential> ContactProblem<F> {
     /// The case's parameters with the plate at `z0`, in the order of [`Problem::parameters`].
     pub fn parameters_at(&self, z0: f64) -> Vec<f64> {
         let g = &self.groups;
-        vec![z0, g.adhesion, g.bending, g.pressure, g.film, g.surface_tension]
+        let own = [z0, g.adhesion, g.bending, g.pressure, g.film, g.surface_tension];
+        own.into_iter().chain(gas_and_material_of(g.gas_exponent, &self.shell)).collect()
     }
 
     /// The potential of the film.
-    pub fn film(&self) -> F {
+    pub fn film(&self) -> Film {
         self.potential
     }
 
@@ -185,12 +210,12 @@ impl<F: Potential> ContactProblem<F> {
         u: &[f64],
         p: &[f64],
     ) -> Result<(Coefficients, Gas), EvalError> {
-        if let Some(at) = (0..parameter::COUNT).find(|&i| !p.get(i).is_some_and(|x| x.is_finite()))
-        {
+        let known = self.parameters.len();
+        if let Some(at) = (0..known).find(|&i| !p.get(i).is_some_and(|x| x.is_finite())) {
             return Err(EvalError::NotFinite { at: u.len() + at });
         }
-        let [plate, adhesion, bending, ambient, film, surface_tension] =
-            std::array::from_fn(|i| p.get(i).copied().unwrap_or(f64::NAN));
+        let [plate, adhesion, bending, ambient, film, surface_tension, exponent, poisson, b]: [f64;
+            parameter::COUNT] = std::array::from_fn(|i| p.get(i).copied().unwrap_or(f64::NAN));
         let bad = |what, ParamId(i): ParamId, value| {
             Err(EvalError::Inadmissible { what, at: u.len() + i, value })
         };
@@ -200,52 +225,53 @@ impl<F: Potential> ContactProblem<F> {
         if film <= 0.0 {
             return bad("the film length is not positive", parameter::FILM, film);
         }
-        let poisson = self.shell.poisson;
-        let c = Coefficients { bending, poisson, surface_tension, adhesion, film, plate };
-        Ok((c, Gas { ambient, surface_tension, exponent: self.groups.gas_exponent }))
+        if poisson.abs() >= 1.0 {
+            return bad(POISSON_RATIO, parameter::POISSON, poisson);
+        }
+        let c = Coefficients { bending, poisson, b, surface_tension, adhesion, film, plate };
+        Ok((c, Gas { ambient, surface_tension, exponent }))
     }
 
+    /// Hessian, and gradient unless `r` is empty.
     fn linearise_as<L: Membrane>(
         &self,
         law: &L,
         u: &[f64],
-        p: &[f64],
+        (c, gas): (&Coefficients, &Gas),
         r: &mut [f64],
         j: &mut SymmetricBand,
     ) -> Result<(), EvalError> {
-        let (c, gas) = self.coefficients(u, p)?;
-        // r holds v, the gradient of the volume, until the rank-one term has been set
-        let volume = energy::volume_gradient(&self.mesh, u, r)?;
-        let excess = gas.excess(volume);
         j.set_zero();
-        j.set_rank_one(gas.stiffness(volume), r);
-        for r in r.iter_mut() {
-            *r *= -excess;
+        let (stiffness, v) = j.rank_one_mut();
+        let volume = energy::volume_gradient(&self.mesh, u, v)?;
+        *stiffness = gas.stiffness(volume);
+        let excess = gas.excess(volume);
+        for (r, v) in r.iter_mut().zip(v) {
+            *r = -excess * *v;
         }
-        energy::add_linearisation(&self.mesh, u, law, &self.potential, &c, excess, r, j)
+        energy::add_linearisation(&self.mesh, u, law, &self.potential, c, excess, r, j)
     }
 
     fn residual_as<L: Membrane>(
         &self,
         law: &L,
         u: &[f64],
-        p: &[f64],
+        (c, gas): (&Coefficients, &Gas),
         r: &mut [f64],
     ) -> Result<(), EvalError> {
-        let (c, gas) = self.coefficients(u, p)?;
         let volume = energy::volume_gradient(&self.mesh, u, r)?;
         let excess = gas.excess(volume);
         for r in r.iter_mut() {
             *r *= -excess;
         }
         let film = &self.potential;
-        energy::add_gradient(&self.mesh, u, film.wall(&c), r, |at, x| {
-            density::gradient(law, film, &c, at, x)
+        energy::add_gradient(&self.mesh, u, film.wall(c), r, |at, x| {
+            density::gradient(law, film, c, at, x)
         })
     }
 }
 
-impl<F: Potential> Problem for ContactProblem<F> {
+impl Problem for ContactProblem {
     type Jacobian = SymmetricBand;
 
     fn dim(&self) -> usize {
@@ -261,12 +287,12 @@ impl<F: Potential> Problem for ContactProblem<F> {
     }
 
     fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
-        with_law!(self, |law| self.residual_as(&law, u, p, r))
+        let (c, gas) = self.coefficients(u, p)?;
+        with_law!(c.material(self.shell.law), |law| self.residual_as(&law, u, (&c, &gas), r))
     }
 
     fn jacobian(&self, u: &[f64], p: &[f64], j: &mut SymmetricBand) -> Result<(), EvalError> {
-        let mut scratch = self.volume_gradient.borrow_mut();
-        self.linearise(u, p, &mut scratch, j)
+        self.linearise(u, p, &mut [], j)
     }
 
     fn linearise(
@@ -276,7 +302,8 @@ impl<F: Potential> Problem for ContactProblem<F> {
         r: &mut [f64],
         j: &mut SymmetricBand,
     ) -> Result<(), EvalError> {
-        with_law!(self, |law| self.linearise_as(&law, u, p, r, j))
+        let (c, gas) = self.coefficients(u, p)?;
+        with_law!(c.material(self.shell.law), |law| self.linearise_as(&law, u, (&c, &gas), r, j))
     }
 
     fn parameter_derivative(
@@ -293,6 +320,7 @@ impl<F: Potential> Problem for ContactProblem<F> {
         let by_excess = match which {
             parameter::PRESSURE => gas.excess_by_ambient(volume),
             parameter::SURFACE_TENSION => gas.excess_by_surface_tension(volume),
+            parameter::GAS_EXPONENT => gas.excess_by_exponent(volume),
             _ => 0.0,
         };
         for out in out.iter_mut() {
@@ -300,6 +328,13 @@ impl<F: Potential> Problem for ContactProblem<F> {
         }
         if let Some(variable) = variable(which) {
             return plate::add_gradient_by(mesh, film, u, &c, variable, out);
+        }
+        if let Some(constant) = constant(which) {
+            return with_law!(c.material(self.shell.law), |law| {
+                energy::add_gradient(mesh, u, film.wall(&c), out, |at, x| {
+                    density::material_gradient(&law, constant, &c, at, x)
+                })
+            });
         }
         match which {
             parameter::BENDING => energy::add_gradient(mesh, u, film.wall(&c), out, |at, x| {
@@ -367,6 +402,7 @@ impl<F: Potential> Problem for ContactProblem<F> {
                 let direct = match which {
                     parameter::PRESSURE => 1.0 + gas.excess_by_ambient(volume),
                     parameter::SURFACE_TENSION => gas.excess_by_surface_tension(volume),
+                    parameter::GAS_EXPONENT => gas.excess_by_exponent(volume),
                     _ => 0.0,
                 };
                 Ok(Some(direct * dp - gas.stiffness(volume) * volume_slope()?))

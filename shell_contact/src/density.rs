@@ -10,8 +10,9 @@
 
 use crate::bending::{self, StrainJet, strain_jet};
 use crate::film::Potential;
-use crate::membrane::Membrane;
+use crate::membrane::{Constant, Membrane};
 use crate::meridian::Place;
+use crate::params::{Law, Shell};
 use crate::scalar::Scalar;
 
 /// The numbers that enter the density.
@@ -19,8 +20,10 @@ use crate::scalar::Scalar;
 pub struct Coefficients {
     /// Bending stiffness `k_b`.
     pub bending: f64,
-    /// Poisson ratio of the bending energy.
+    /// Poisson ratio, of the bending energy and of a membrane law that has one.
     pub poisson: f64,
+    /// The share `b` of Mooney and Rivlin's law; other laws do not read it.
+    pub b: f64,
     /// Surface tension `γ_BW`.
     pub surface_tension: f64,
     /// Adhesion `W0`.
@@ -29,6 +32,17 @@ pub struct Coefficients {
     pub film: f64,
     /// Height of the plate above the equator.
     pub plate: f64,
+}
+
+impl Coefficients {
+    /// The material of a law with these constants.
+    pub(crate) fn material(&self, law: Law) -> Shell {
+        let law = match law {
+            Law::MooneyRivlin { .. } => Law::MooneyRivlin { b: self.b },
+            other => other,
+        };
+        Shell { law, poisson: self.poisson }
+    }
 }
 
 /// Where on the reference sphere, and how much it counts.
@@ -301,6 +315,7 @@ pub fn bending_gradient<T: Scalar>(poisson: f64, at: &Site<T>, x: &Place<T>) -> 
     let c = Coefficients {
         bending: 1.0,
         poisson,
+        b: 0.0,
         surface_tension: 0.0,
         adhesion: 0.0,
         film: 1.0,
@@ -309,6 +324,27 @@ pub fn bending_gradient<T: Scalar>(poisson: f64, at: &Site<T>, x: &Place<T>) -> 
     let p = point(&c, at, x);
     let none = T::constant(0.0);
     assemble_gradient(&p, at, x.s[0], x.s[1], x.z[1], none, none, none, none)
+}
+
+/// Derivative of the gradient by a constant of the material: of the membrane, and of the bending
+/// energy, where `∂/∂ν ½(K_s² + 2νK_sK_φ + K_φ²) = K_sK_φ`.
+#[inline(always)]
+pub fn material_gradient<T: Scalar, L: Membrane>(
+    law: &L,
+    constant: Constant,
+    c: &Coefficients,
+    at: &Site<T>,
+    x: &Place<T>,
+) -> Gradient<T> {
+    let p = point(c, at, x);
+    let none = T::constant(0.0);
+    let kb = match constant {
+        Constant::Poisson => at.area * c.bending,
+        Constant::MooneyB => none,
+    };
+    let p = Point { moment_s: kb * p.strain.kphi, moment_phi: kb * p.strain.ks, ..p };
+    let (w_q, w_m) = law.slopes_by(constant, p.a * p.a, p.hoop * p.hoop);
+    assemble_gradient(&p, at, x.s[0], x.s[1], x.z[1], w_q, w_m, none, none)
 }
 
 /// Gradient of `g(z) σ a` from `g` and `dg/dz`.
@@ -334,6 +370,7 @@ mod tests {
         let c = Coefficients {
             bending: 2e-3,
             poisson: 0.4,
+            b: 0.6,
             surface_tension: 0.07,
             adhesion: 3e-2,
             film: 0.04,

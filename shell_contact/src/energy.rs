@@ -366,7 +366,7 @@ pub fn add_gradient(
     check_finite(out)
 }
 
-/// Adds the gradient without its gas term to `out` and the band of the Hessian, the gas term at
+/// Adds the gradient without its gas term to `out`, unless that is empty, and the band of the Hessian, the gas term at
 /// the excess pressure `P_G − P_A` included, to `hessian`.
 ///
 /// # Errors
@@ -399,7 +399,11 @@ pub fn add_linearisation<L: Membrane, F: Potential>(
             sum_vector(cell, &lanes.0, &mut vector);
             sum_matrix(&triangle, &mut matrix);
         }
-        mesh.scatter(e, &vector, out);
+        if !out.is_empty() {
+            mesh.scatter(e, &vector, out);
+        } else if !vector.iter().sum::<f64>().is_finite() {
+            return Err(EvalError::NotFinite { at: e * mesh.gauss_points() });
+        }
         mesh.scatter_matrix(e, &matrix, hessian);
     }
     check_finite(out)

@@ -53,6 +53,11 @@ impl Gas {
         2.0 * (-self.exponent * Self::log_ratio(volume)).exp()
     }
 
+    /// `∂(P_G − P_A)/∂γ = −P_G ln(V/V_0)`.
+    pub fn excess_by_exponent(&self, volume: f64) -> f64 {
+        -Self::log_ratio(volume) * self.pressure(volume)
+    }
+
     /// The gas energy; zero at `V̂_0`.
     pub fn energy(&self, volume: f64) -> f64 {
         let log = Self::log_ratio(volume);
@@ -136,16 +141,18 @@ mod tests {
         use num_dual::DualNum;
         for volume in [0.12, 0.29, 0.34, 0.6] {
             let rest = REST_VOLUME;
-            let d = partials([volume, 3.0, 0.08], |x| {
-                let [v, ambient, tension] = x;
-                let ratio = v.recip() * rest;
-                let work = (ratio.powf(0.07) - 1.0) * (rest / 0.07);
+            let d = partials([volume, 3.0, 0.08, 1.07], |x| {
+                let [v, ambient, tension, exponent] = x;
+                let logarithm = (v.recip() * rest).ln();
+                let power = exponent - 1.0;
+                let work = ((logarithm * power).exp() - 1.0) * rest / power;
                 ambient * (v - rest) + (ambient + tension * 2.0) * work
             });
             close(GAS.excess(volume), -d.gradient[0], 1e-12, 1e-14);
             close(GAS.stiffness(volume), d.hessian[0][0], 1e-12, 0.0);
             close(GAS.excess_by_ambient(volume), -d.hessian[0][1], 1e-12, 1e-14);
             close(GAS.excess_by_surface_tension(volume), -d.hessian[0][2], 1e-12, 0.0);
+            close(GAS.excess_by_exponent(volume), -d.hessian[0][3], 1e-12, 1e-14);
         }
     }
 }

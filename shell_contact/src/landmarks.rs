@@ -13,7 +13,6 @@
 
 use crate::contact::{ContactProblem, parameter};
 use crate::device::Device;
-use crate::film::Potential;
 use continuation::{Branch, Detail, EvalError, Event, EventKind, Matrix, Point, Problem};
 
 /// Name of the special point at which the slope of the force has fallen to half.
@@ -56,8 +55,8 @@ struct State {
 ///
 /// # Errors
 /// When a state of the branch is not admissible, which none is that was traced.
-pub fn locate<F: Potential>(
-    problem: &ContactProblem<F>,
+pub fn locate(
+    problem: &ContactProblem,
     device: Device,
     branch: &mut Branch,
     wanted: Wanted,
@@ -89,15 +88,15 @@ fn observed(branch: &Branch, point: &Point, name: &str) -> f64 {
 }
 
 /// The solver of one problem.
-struct Solver<'p, F: Potential> {
-    problem: &'p ContactProblem<F>,
+struct Solver<'p> {
+    problem: &'p ContactProblem,
     residual: Vec<f64>,
     tangent: Vec<f64>,
-    hessian: <ContactProblem<F> as Problem>::Jacobian,
+    hessian: <ContactProblem as Problem>::Jacobian,
 }
 
-impl<'p, F: Potential> Solver<'p, F> {
-    fn new(problem: &'p ContactProblem<F>) -> Self {
+impl<'p> Solver<'p> {
+    fn new(problem: &'p ContactProblem) -> Self {
         let zero = vec![0.0; problem.dim()];
         let hessian = problem.new_jacobian();
         Solver { problem, residual: zero.clone(), tangent: zero, hessian }
@@ -197,7 +196,7 @@ fn between(dim: usize, a: &Point, b: &Point, share: f64) -> Vec<f64> {
 /// What is found: the number of the point before, the state, the error of its plate's height.
 type Found = Option<(usize, State, f64)>;
 
-fn contact<F: Potential>(problem: &ContactProblem<F>, branch: &Branch) -> Result<Found, EvalError> {
+fn contact(problem: &ContactProblem, branch: &Branch) -> Result<Found, EvalError> {
     let film = problem.groups().film;
     let gap = |point: &Point| height(branch, point) - observed(branch, point, "pole_height") - film;
     let first = branch.points.windows(2).position(|w| gap(&w[0]) > 0.0 && gap(&w[1]) <= 0.0);
@@ -213,7 +212,7 @@ fn contact<F: Potential>(problem: &ContactProblem<F>, branch: &Branch) -> Result
     }))
 }
 
-fn knee<F: Potential>(problem: &ContactProblem<F>, branch: &Branch) -> Result<Found, EvalError> {
+fn knee(problem: &ContactProblem, branch: &Branch) -> Result<Found, EvalError> {
     let points = &branch.points;
     let kind = EventKind::Zero("force".to_owned());
     let Some(zero) = branch.events_of(&kind).next().map(|event| event.point) else {
@@ -253,7 +252,7 @@ fn knee<F: Potential>(problem: &ContactProblem<F>, branch: &Branch) -> Result<Fo
     // the maximum lies in one of the steps beside the largest of the points
     let (low, high) = (zero + largest.saturating_sub(1), zero + (largest + 1).min(last));
     let place = |k: usize| height(branch, &points[k]);
-    let state = |solver: &mut Solver<'_, F>, z0: f64, near: (usize, usize)| {
+    let state = |solver: &mut Solver<'_>, z0: f64, near: (usize, usize)| {
         // the plate goes down from point to point
         let k = (near.0..near.1).rev().find(|k| place(*k) >= z0).unwrap_or(near.0);
         let share = (place(k) - z0) / (place(k) - place(k + 1));
@@ -262,7 +261,7 @@ fn knee<F: Potential>(problem: &ContactProblem<F>, branch: &Branch) -> Result<Fo
     let mut top = slopes[largest];
     if high > low {
         let (mut a, mut b) = (place(high), place(low));
-        let slope = |solver: &mut Solver<'_, F>, z0| {
+        let slope = |solver: &mut Solver<'_>, z0| {
             state(solver, z0, (low, high)).map(|s| s.map_or(f64::NAN, |s| s.slope))
         };
         let (mut x, mut y) = (a + GOLDEN * (b - a), b - GOLDEN * (b - a));
@@ -312,8 +311,8 @@ fn knee<F: Potential>(problem: &ContactProblem<F>, branch: &Branch) -> Result<Fo
 }
 
 /// Puts a state after a point of the branch, as a special point.
-fn insert<F: Potential>(
-    problem: &ContactProblem<F>,
+fn insert(
+    problem: &ContactProblem,
     device: Device,
     branch: &mut Branch,
     (after, state, error): (usize, &State, f64),

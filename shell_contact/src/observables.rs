@@ -75,14 +75,20 @@ impl Observation {
     }
 }
 
-pub(crate) fn observe<F: Potential>(
-    problem: &ContactProblem<F>,
+pub(crate) fn observe(
+    problem: &ContactProblem,
     u: &[f64],
     p: &[f64],
 ) -> Result<Observation, EvalError> {
     let (c, gas) = problem.coefficients(u, p)?;
     let mesh = &problem.mesh;
-    let parts = with_law!(problem, |law| energy::parts(mesh, u, &law, &problem.potential, &c))?;
+    let parts = with_law!(c.material(problem.shell.law), |law| energy::parts(
+        mesh,
+        u,
+        &law,
+        &problem.potential,
+        &c
+    ))?;
     let whole = 4.0 * PI;
     let energies = [
         parts.stretching,
@@ -197,7 +203,7 @@ impl Profile {
     }
 }
 
-impl<F: Potential> ContactProblem<F> {
+impl ContactProblem {
     /// The meridian at `samples ≥ 2` equally spaced reference angles, pole and equator included.
     ///
     /// # Errors
@@ -205,7 +211,7 @@ impl<F: Potential> ContactProblem<F> {
     pub fn profile(&self, u: &[f64], p: &[f64], samples: usize) -> Result<Profile, EvalError> {
         let (c, _) = self.coefficients(u, p)?;
         energy::admissible(&self.mesh, u, self.potential.wall(&c))?;
-        let tensions = |s, phi| with_law!(self, |law| tensions(&law, s, phi));
+        let tensions = |s, phi| with_law!(c.material(self.shell.law), |law| tensions(&law, s, phi));
         Ok(Profile::of(&self.mesh, &self.potential, u, &c, samples, tensions))
     }
 }

@@ -104,6 +104,16 @@ pub enum Law {
     Skalak,
 }
 
+impl Law {
+    /// The share `b`, of the law that has one.
+    pub fn b(self) -> Option<f64> {
+        match self {
+            Law::MooneyRivlin { b } => Some(b),
+            Law::Hooke | Law::Skalak => None,
+        }
+    }
+}
+
 /// What the shell is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Shell {

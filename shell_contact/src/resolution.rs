@@ -7,7 +7,7 @@
 
 use crate::contact::ContactProblem;
 use crate::density::Coefficients;
-use crate::film::Potential;
+use crate::film::{Film, Potential};
 use crate::half::HalfMeridian;
 use crate::spline::Basis;
 use crate::two_plates::{SupportedProblem, TwoPlatesProblem};
@@ -53,7 +53,7 @@ impl Resolution {
     }
 }
 
-impl<F: Potential> ContactProblem<F> {
+impl ContactProblem {
     /// How well the elements resolve the state `u` with the parameters `p`.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl<F: Potential> ContactProblem<F> {
     }
 }
 
-impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
+impl TwoPlatesProblem {
     /// How well the elements resolve the state `u` with the parameters `p`: the worse of both halves.
     ///
     /// # Errors
@@ -102,7 +102,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     }
 }
 
-impl<T: Potential, B: Potential> SupportedProblem<'_, T, B> {
+impl SupportedProblem<'_> {
     /// How well the elements resolve the state `x` with the parameters `p`: the worse of both halves.
     ///
     /// # Errors
@@ -155,10 +155,10 @@ impl Sites {
     }
 }
 
-fn of_half<F: Potential>(
+fn of_half(
     half: &impl HalfMeridian,
     sites: &Sites,
-    potential: &F,
+    potential: &Film,
     u: &[f64],
     c: &Coefficients,
 ) -> Resolution {

@@ -1,7 +1,6 @@
 //! The main job: the branch of a shell between approaching plates, with its special points.
 
 use crate::contact::ContactProblem;
-use crate::film::Potential;
 use continuation::{Branch, EventKind, Progress, Settings, TraceError, Tracer, Watch};
 use std::ops::ControlFlow;
 
@@ -43,8 +42,8 @@ impl ContactBranch {
 ///
 /// # Errors
 /// When the start is unusable; a branch that ends early is a result.
-pub fn trace_contact<F: Potential>(
-    problem: &ContactProblem<F>,
+pub fn trace_contact(
+    problem: &ContactProblem,
     start: f64,
     settings: Settings,
     observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,

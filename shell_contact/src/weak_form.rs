@@ -32,11 +32,7 @@ pub struct Balance {
 ///
 /// # Errors
 /// When the state is not admissible.
-pub fn balances<F: Potential>(
-    problem: &ContactProblem<F>,
-    u: &[f64],
-    p: &[f64],
-) -> Result<Vec<Balance>, EvalError> {
+pub fn balances(problem: &ContactProblem, u: &[f64], p: &[f64]) -> Result<Vec<Balance>, EvalError> {
     let (c, gas) = problem.coefficients(u, p)?;
     let mesh = &problem.mesh;
     energy::admissible(mesh, u, problem.potential.wall(&c))?;
@@ -66,7 +62,9 @@ pub fn balances<F: Potential>(
             let (bend_s, bend_phi) = (turning - 1.0, stretch_phi * kphi - 1.0);
             let ms = c.bending / stretch_phi * (bend_s + c.poisson * bend_phi);
             let mphi = c.bending / stretch_s * (bend_phi + c.poisson * bend_s);
-            let (tau_s, tau_phi) = with_law!(problem, |law| tensions(&law, stretch_s, stretch_phi));
+            let material = c.material(problem.shell.law);
+            let (tau_s, tau_phi) =
+                with_law!(material, |law| tensions(&law, stretch_s, stretch_phi));
             let film = problem.potential.jet(c.plate - z, c.adhesion, c.film);
             // attraction positive, as Eq. (16) has it
             let disjoining = film.d1 * s1 / a;

@@ -1,76 +1,27 @@
 //! `arclen cycle`: once to and fro, with the jumps between stable states.
 
-use super::delivery::Made;
+use super::Done;
 use super::progress::Observer;
 use crate::Listen;
 use crate::advice::Advised;
 use crate::arguments::CycleArguments;
-use crate::exit::Exit;
-use pictures::{REPORT, cycle_report};
-
-use crate::terminal;
-use study::case::ResolvedCase;
-use study::record::{CycleResult, branch_csv, cycle_json, cycle_summary, cycle_table};
+use pictures::results;
+use study::record::cycle_summary;
 use study::run::run_cycle;
-use study::store::Folder;
-
-const CYCLE: &str = "cycle.json";
-const PATH: &str = "cycle.csv";
-const BRANCH: &str = "branch.csv";
-const CASE: &str = "case.toml";
 
 /// Travel a case to and fro.
-pub(super) fn cycle(arguments: &CycleArguments, listen: &Listen<'_>) -> Exit {
-    let case =
-        match super::loaded(&arguments.case, &arguments.case.overrides(), arguments.output.quiet) {
-            Ok(loaded) => loaded.case,
-            Err(exit) => return exit,
-        };
-    let names = [CYCLE, PATH, BRANCH, CASE, REPORT, pictures::LOOP];
-    let folder = match arguments.output.folder(&case.name, &names, &arguments.case.inputs()) {
-        Ok(folder) => folder,
-        Err(exit) => return exit,
-    };
-    let mut observer = Observer::new(Some(case.path), arguments.output.quiet, listen);
-    let outcome = run_cycle(&case, arguments.report, &mut |progress| observer.update(progress));
+pub(super) fn cycle(arguments: &CycleArguments, listen: &Listen<'_>) -> Done {
+    let CycleArguments { case: which, output, report } = arguments;
+    let case = super::loaded(which, &which.overrides(), output.quiet)?.case;
+    let inputs = which.inputs();
+    let folder = output.folder(&case.name, &results::cycle_names(), &inputs)?;
+    let mut observer = Observer::new(Some(case.path), output.quiet, listen);
+    let outcome = run_cycle(&case, *report, &mut |progress| observer.update(progress));
     observer.finish();
-    match outcome {
-        Err(error) => {
-            terminal::error(&error.advised());
-            Exit::BadInput
-        }
-        Ok(mut result) => {
-            result.pictures.title = pictures::titled(&result.pictures.title, &case);
-            deliver(arguments, &case, &result, folder.as_ref())
-        }
-    }
-}
-
-/// Write files, JSON and summary.
-fn deliver(
-    arguments: &CycleArguments,
-    case: &ResolvedCase,
-    result: &CycleResult,
-    folder: Option<&Folder>,
-) -> Exit {
-    let mut made = Made::json(CYCLE, cycle_json(result));
-    if folder.is_some() {
-        made.file(CASE, case.to_toml());
-        made.attempt(PATH, branch_csv(&cycle_table(result)));
-        made.attempt(BRANCH, branch_csv(&result.branch));
-        if arguments.report {
-            made.attempt(REPORT, cycle_report(result));
-        }
-        if !arguments.output.no_pictures {
-            made.files(pictures::draw_cycle(&result.pictures));
-        }
-    }
+    let mut result = outcome.map_err(|error| super::refuse(&error.advised()))?;
+    result.pictures.title = pictures::titled(&result.pictures.title, &case);
+    let made = results::cycle(&case, &result, output.wanted(folder.as_ref(), *report));
     let complete = result.stopped_because.is_complete();
-    arguments.output.deliver(
-        folder,
-        made,
-        &arguments.case.inputs(),
-        |written| cycle_summary(result, written),
-        complete,
-    )
+    let summary = |written: Option<&std::path::Path>| cycle_summary(&result, written);
+    output.deliver(folder.as_ref(), made, &inputs, summary, complete)
 }

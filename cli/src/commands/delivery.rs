@@ -1,12 +1,13 @@
 //! How results leave a command: files, JSON on standard output, a summary, an exit code.
 
+use super::Done;
 use crate::advice::Advised;
 use crate::arguments::{Format, OutputArguments};
 use crate::exit::Exit;
 use crate::terminal;
-use std::fmt::Display;
+use pictures::results::{Results, Wanted};
 use std::path::{Path, PathBuf};
-use study::store::{Earlier, Files, Folder, with_files};
+use study::store::Folder;
 
 impl OutputArguments {
     /// The output folder; `None` when no files are wanted.
@@ -33,10 +34,12 @@ impl OutputArguments {
         let names: Vec<&str> =
             names.iter().copied().chain(pixels.iter().map(String::as_str)).collect();
         let claimed = self.place(case).map(|path| Folder::claim(&path, &names, inputs));
-        claimed.transpose().map_err(|error| {
-            terminal::error(&error.advised());
-            Exit::BadInput
-        })
+        claimed.transpose().map_err(|error| super::refuse(&error.advised()))
+    }
+
+    /// The files that are wanted, if any are.
+    pub(super) fn wanted(&self, folder: Option<&Folder>, report: bool) -> Option<Wanted> {
+        folder.map(|_| Wanted { pictures: !self.no_pictures, report })
     }
 
     /// Writes files, JSON and summary; what cannot be made is said and left out. Files that an earlier
@@ -45,24 +48,23 @@ impl OutputArguments {
     pub(super) fn deliver(
         &self,
         folder: Option<&Folder>,
-        mut made: Made,
+        mut results: Results,
         inputs: &[PathBuf],
         summary: impl FnOnce(Option<&Path>) -> String,
         complete: bool,
-    ) -> Exit {
+    ) -> Done {
         let mut written = None;
         if let Some(folder) = folder {
-            made.format(&self.format);
-            made.list();
-            let earlier = made.earlier(folder.path());
-            written = made.take(folder.write_surely(&made.files)).map(|()| folder.path());
-            if !made.failed {
-                earlier.remove(folder.path(), &made.sums, inputs);
-            }
+            let wanted = |format| self.format.contains(&format);
+            results.choose(wanted(Format::Svg), wanted(Format::Png));
+            written = results.write(folder, inputs).then(|| folder.path());
+        }
+        for problem in results.problems() {
+            terminal::error(problem);
         }
         let mut printed = Exit::Done;
         if self.json {
-            printed = super::print(&made.json);
+            printed = super::print(results.text());
         }
         if !self.quiet {
             let summary = summary(written);
@@ -72,117 +74,35 @@ impl OutputArguments {
                 printed = super::print(&summary);
             }
         }
-        if made.failed || printed != Exit::Done {
-            Exit::NotWritten
+        if !results.problems().is_empty() || printed != Exit::Done {
+            Err(Exit::NotWritten)
         } else if complete {
-            Exit::Done
+            Ok(Exit::Done)
         } else {
-            Exit::StoppedEarly
+            Ok(Exit::StoppedEarly)
         }
     }
 }
 
-/// What a command has made for its user.
-#[derive(Debug, Default)]
-pub(super) struct Made {
-    name: String,
-    json: String,
-    files: Vec<(String, Vec<u8>)>,
-    /// Checksums of all files, those written already included.
-    sums: Files,
-    failed: bool,
-}
+#[cfg(test)]
+mod tests {
+    use crate::arguments::{Arguments, Command};
+    use clap::Parser;
+    use std::path::Path;
 
-impl Made {
-    /// The JSON, which is also the file `name`.
-    pub(super) fn json<E: Display>(name: &str, json: Result<String, E>) -> Self {
-        let mut made = Made { name: name.to_owned(), ..Made::default() };
-        made.json = made.take(json).unwrap_or_default();
-        let text = made.json.clone();
-        made.file(name, text);
-        made
-    }
-
-    /// A file.
-    pub(super) fn file(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) {
-        self.files.push((name.into(), bytes.into()));
-    }
-
-    /// A file that could perhaps not be made.
-    pub(super) fn attempt<E: Display>(
-        &mut self,
-        name: impl Into<String>,
-        bytes: Result<impl Into<Vec<u8>>, E>,
-    ) {
-        if let Some(bytes) = self.take(bytes) {
-            self.file(name, bytes);
-        }
-    }
-
-    /// Several files.
-    pub(super) fn files<E: Display>(&mut self, files: Result<Vec<(String, Vec<u8>)>, E>) {
-        if let Some(files) = self.take(files) {
-            self.files.extend(files);
-        }
-    }
-
-    /// A file that was written already, with this checksum, or could not be.
-    pub(super) fn done<E: Display>(&mut self, name: &str, written: Result<u32, E>) {
-        if let Some(sum) = self.take(written) {
-            self.sums.insert(name.to_owned(), sum);
-        }
-    }
-
-    /// Pictures in the formats that are wanted; those that have a PNG already stay as they are.
-    fn format(&mut self, formats: &[Format]) {
-        let made = std::mem::take(&mut self.files);
-        let names: Vec<String> = made.iter().map(|(name, _)| name.clone()).collect();
-        for (name, bytes) in made {
-            let Some(png) = name.strip_suffix(".svg").map(|stem| format!("{stem}.png")) else {
-                self.files.push((name, bytes));
-                continue;
-            };
-            if names.contains(&png) {
-                self.files.push((name, bytes));
-                continue;
+    #[test]
+    fn json_without_a_folder_writes_no_files() {
+        let place = |more: &[&str]| {
+            let line = ["arclen", "trace", "fig12"].iter().chain(more);
+            match Arguments::try_parse_from(line).unwrap().command {
+                Command::Trace(arguments) => arguments.output.place("fig12"),
+                other => panic!("{other:?}"),
             }
-            if formats.contains(&Format::Png) {
-                let pixels = pictures::png(&String::from_utf8_lossy(&bytes));
-                if let Some(pixels) = self.take(pixels) {
-                    self.files.push((png, pixels));
-                }
-            }
-            if formats.contains(&Format::Svg) {
-                self.files.push((name, bytes));
-            }
-        }
-    }
-
-    /// Lists the files in the JSON.
-    fn list(&mut self) {
-        let others = self.files.iter().filter(|(name, _)| *name != self.name);
-        self.sums.extend(others.map(|(name, bytes)| (name.clone(), crc32fast::hash(bytes))));
-        self.json = with_files(&self.json, &self.sums);
-        for (_, bytes) in self.files.iter_mut().filter(|(name, _)| *name == self.name) {
-            bytes.clone_from(&self.json.clone().into_bytes());
-        }
-        // a file itself, but its own checksum it cannot hold
-        self.sums.insert(self.name.clone(), 0);
-    }
-
-    /// What earlier runs left in the folder.
-    fn earlier(&self, folder: &Path) -> Earlier {
-        let case = self.files.iter().find(|(name, _)| name == "case.toml");
-        let case = case.and_then(|(_, bytes)| std::str::from_utf8(bytes).ok());
-        Earlier::read(folder, &self.name, case)
-    }
-
-    /// What was made; an error is said.
-    fn take<T, E: Display>(&mut self, made: Result<T, E>) -> Option<T> {
-        made.map_err(|error| {
-            terminal::error(&error);
-            self.failed = true;
-        })
-        .ok()
+        };
+        assert_eq!(place(&["--json"]), None);
+        assert_eq!(place(&[]).unwrap(), Path::new("./arclen-out/fig12"));
+        assert_eq!(place(&["--json", "--out", "x"]).unwrap(), Path::new("x"));
+        let pdf = ["arclen", "trace", "fig12", "--format", "pdf"];
+        assert!(Arguments::try_parse_from(pdf).is_err());
     }
 }

@@ -1,5 +1,6 @@
 //! `arclen explore`: a page on the loopback interface on which the case is moved.
 
+use super::Done;
 use super::progress::requests;
 use crate::Listen;
 use crate::arguments::ExploreArguments;
@@ -10,32 +11,24 @@ use std::process::{Command, Stdio};
 use study::case::catalogue;
 
 /// Serve the page until Ctrl-C.
-pub(super) fn explore(arguments: &ExploreArguments, listen: &Listen<'_>) -> Exit {
-    let case = match super::loaded(&arguments.case, &arguments.case.overrides(), false) {
-        Ok(loaded) => loaded.case,
-        Err(exit) => return exit,
-    };
+pub(super) fn explore(arguments: &ExploreArguments, listen: &Listen<'_>) -> Done {
+    let case = super::loaded(&arguments.case, &arguments.case.overrides(), false)?.case;
     let stop = requests(listen);
     let word = arguments.case.case.to_string_lossy();
     let words = arguments.case.words();
-    let explorer = match Explorer::new(&word, words, case, catalogue(), arguments.port, stop) {
-        Ok(explorer) => explorer,
-        Err(error) => {
-            terminal::error(&error);
-            return Exit::BadInput;
-        }
-    };
+    let explorer = Explorer::new(&word, words, case, catalogue(), arguments.port, stop)
+        .map_err(|error| super::refuse(&error))?;
     let url = explorer.url();
     let printed = super::print(&format!("{url}\n"));
     if printed != Exit::Done {
-        return printed;
+        return Err(printed);
     }
     terminal::err("Open this address in a browser on this computer; Ctrl-C ends it.\n");
     if !arguments.no_open && terminal::watched() {
         open(&url);
     }
     explorer.run();
-    Exit::Done
+    Ok(Exit::Done)
 }
 
 /// Shows the page in the user's browser, where there is one; the address is printed in any case.

@@ -1,41 +1,31 @@
 //! `arclen figure`: the figures of the reference paper, and its claims.
 
-use super::delivery::Made;
+use super::Done;
 use super::progress::Observer;
 use crate::Listen;
 use crate::arguments::FigureArguments;
-use crate::exit::Exit;
-use crate::terminal;
-use paper::{self, Computed, FigureError};
+use paper::{self, Computed};
+use pictures::results::Results;
 use std::path::Path;
 
 const JSON: &str = "figures.json";
 
 /// Compute figures.
-pub(super) fn figure(arguments: &FigureArguments, listen: &Listen<'_>) -> Exit {
-    let planned = paper::numbers(&arguments.numbers)
-        .and_then(|numbers| paper::plan(&numbers, &arguments.overrides()));
-    let plan = match planned {
-        Ok(plan) => plan,
-        Err(error) => return refuse(&error),
-    };
-    let folder = match arguments.output.folder("figures", &[JSON, "index.html", "claims.json"], &[])
-    {
-        Ok(folder) => folder,
-        Err(exit) => return exit,
-    };
+pub(super) fn figure(arguments: &FigureArguments, listen: &Listen<'_>) -> Done {
+    let plan = paper::numbers(&arguments.numbers)
+        .and_then(|numbers| paper::plan(&numbers, &arguments.overrides()))
+        .map_err(|error| super::refuse(&error))?;
+    let names = [JSON, "index.html", "claims.json"];
+    let folder = arguments.output.folder("figures", &names, &[])?;
     let observer = Observer::new(None, arguments.output.quiet, listen);
     let outcome = plan.compute(&observer.stop(), &mut |at| {
         observer.say(format!("{} of {} curves", at.done, at.all));
     });
-    let computed = match outcome {
-        Ok(computed) => computed,
-        Err(error) => {
-            observer.finish();
-            return refuse(&error);
-        }
-    };
-    let mut made = Made::json(JSON, paper::json(&computed));
+    let computed = outcome.map_err(|error| {
+        observer.finish();
+        super::refuse(&error)
+    })?;
+    let mut made = Results::new(JSON, paper::json(&computed));
     if folder.is_some() {
         observer.say("drawing".to_owned());
         made.files(paper::files(&computed, !arguments.output.no_pictures));
@@ -43,11 +33,6 @@ pub(super) fn figure(arguments: &FigureArguments, listen: &Listen<'_>) -> Exit {
     observer.finish();
     let complete = computed.early.is_empty();
     arguments.output.deliver(folder.as_ref(), made, &[], |at| summary(&computed, at), complete)
-}
-
-fn refuse(error: &FigureError) -> Exit {
-    terminal::error(error);
-    Exit::BadInput
 }
 
 fn summary(computed: &Computed, written: Option<&Path>) -> String {

@@ -1,68 +1,26 @@
 //! `arclen map`: curves of special points in two parameters.
 
-use super::delivery::Made;
+use super::Done;
 use super::progress::Observer;
 use crate::Listen;
 use crate::advice::Advised;
 use crate::arguments::MapArguments;
-use crate::exit::Exit;
-
-use crate::terminal;
-use study::case::ResolvedCase;
-use study::record::{MapResult, branch_csv, map_json, map_summary};
+use pictures::results;
+use study::record::map_summary;
 use study::run::run_map;
-use study::store::Folder;
-
-const MAP: &str = "map.json";
-const CASE: &str = "case.toml";
 
 /// Map a case.
-pub(super) fn map(arguments: &MapArguments, listen: &Listen<'_>) -> Exit {
-    let case =
-        match super::loaded(&arguments.case, &arguments.case.overrides(), arguments.output.quiet) {
-            Ok(loaded) => loaded.case,
-            Err(exit) => return exit,
-        };
-    let names = [MAP, CASE, pictures::MAP, "fold-*.csv", "hopf-*.csv", "branch-point-*.csv"];
-    let folder = match arguments.output.folder(&case.name, &names, &arguments.case.inputs()) {
-        Ok(folder) => folder,
-        Err(exit) => return exit,
-    };
-    let mut observer = Observer::new(Some(case.path), arguments.output.quiet, listen);
-    let outcome = run_map(&case, &arguments.over, &mut |progress| observer.update(progress));
+pub(super) fn map(arguments: &MapArguments, listen: &Listen<'_>) -> Done {
+    let MapArguments { case: which, output, over } = arguments;
+    let case = super::loaded(which, &which.overrides(), output.quiet)?.case;
+    let inputs = which.inputs();
+    let folder = output.folder(&case.name, &results::map_names(), &inputs)?;
+    let mut observer = Observer::new(Some(case.path), output.quiet, listen);
+    let outcome = run_map(&case, over, &mut |progress| observer.update(progress));
     observer.finish();
-    match outcome {
-        Err(error) => {
-            terminal::error(&error.advised());
-            Exit::BadInput
-        }
-        Ok(result) => deliver(arguments, &case, &result, folder.as_ref()),
-    }
-}
-
-/// Write files, JSON and summary.
-fn deliver(
-    arguments: &MapArguments,
-    case: &ResolvedCase,
-    result: &MapResult,
-    folder: Option<&Folder>,
-) -> Exit {
-    let mut made = Made::json(MAP, map_json(result));
-    if folder.is_some() {
-        made.file(CASE, case.to_toml());
-        for curve in &result.curves {
-            made.attempt(curve.csv.clone(), branch_csv(&curve.table));
-        }
-        if !arguments.output.no_pictures && !result.curves.is_empty() {
-            made.attempt(pictures::MAP, pictures::draw_map(case, result));
-        }
-    }
+    let result = outcome.map_err(|error| super::refuse(&error.advised()))?;
+    let made = results::map(&case, &result, output.wanted(folder.as_ref(), false));
     let complete = result.stopped_because.is_complete();
-    arguments.output.deliver(
-        folder,
-        made,
-        &arguments.case.inputs(),
-        |written| map_summary(result, written),
-        complete,
-    )
+    let summary = |written: Option<&std::path::Path>| map_summary(&result, written);
+    output.deliver(folder.as_ref(), made, &inputs, summary, complete)
 }

@@ -23,9 +23,12 @@ use crate::terminal;
 use std::path::PathBuf;
 use study::case::{LoadedCase, Override, catalogue, load};
 
+/// How a command ended: `Err` where it could not go on.
+type Done = Result<Exit, Exit>;
+
 /// Do what was asked.
 pub(crate) fn dispatch(arguments: &Arguments, listen: &Listen<'_>) -> Exit {
-    match &arguments.command {
+    let done = match &arguments.command {
         Command::Trace(arguments) => trace::trace(arguments, listen),
         Command::Diagram(arguments) => diagram::diagram(arguments, listen),
         Command::Explore(arguments) => explore::explore(arguments, listen),
@@ -37,9 +40,10 @@ pub(crate) fn dispatch(arguments: &Arguments, listen: &Listen<'_>) -> Exit {
         Command::Map(arguments) => map::map(arguments, listen),
         Command::Sweep(arguments) => sweep::sweep(arguments, listen),
         Command::Merge(arguments) => sweep::merge(arguments),
-        Command::List => list::list(),
-        Command::Completions { shell } => completions::completions(*shell),
-    }
+        Command::List => Ok(list::list()),
+        Command::Completions { shell } => Ok(completions::completions(*shell)),
+    };
+    done.unwrap_or_else(|exit| exit)
 }
 
 /// The case asked for, or the exit code after saying what is wrong with it.
@@ -49,16 +53,19 @@ fn loaded(
     quiet: bool,
 ) -> Result<LoadedCase, Exit> {
     let loaded = load(&arguments.case, overrides, &catalogue());
-    let loaded = loaded.map_err(|error| {
-        terminal::error(&error.advised());
-        Exit::BadInput
-    })?;
+    let loaded = loaded.map_err(|error| refuse(&error.advised()))?;
     if !quiet {
         for note in &loaded.notes {
             terminal::err(&format!("note: {note}\n"));
         }
     }
     Ok(loaded)
+}
+
+/// Say what is wrong with what was asked for.
+fn refuse(message: &dyn std::fmt::Display) -> Exit {
+    terminal::error(message);
+    Exit::BadInput
 }
 
 /// Say which of the files that were kept are no longer what was written.

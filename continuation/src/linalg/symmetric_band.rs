@@ -130,6 +130,11 @@ impl SymmetricBand {
         self.v.copy_from_slice(v);
     }
 
+    /// `c` and `v` of the rank-one term, to be set in place.
+    pub fn rank_one_mut(&mut self) -> (&mut f64, &mut [f64]) {
+        (&mut self.c, &mut self.v)
+    }
+
     /// The rank-one term, if there is one.
     pub fn rank_one(&self) -> Option<(f64, &[f64])> {
         (self.c != 0.0).then_some((self.c, &self.v[..]))

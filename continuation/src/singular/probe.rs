@@ -4,7 +4,7 @@
 //! Differences of exact Jacobians: the first derivative over four points is right to about 1e-12,
 //! the second to about 1e-8, of what the nonlinearity does over its natural amplitude.
 
-use crate::any_problem::DynProblem;
+use crate::any_problem::Held;
 use crate::linalg::{AnyMatrix, Matrix};
 use crate::problem::{EvalError, ParamId, check_finite, check_pattern};
 use crate::step::{Guard, Weights, dot};
@@ -60,7 +60,7 @@ pub(super) struct Bending {
 
 /// Evaluates a problem near a point; allocated when a special point is analysed.
 pub(crate) struct Probe<'a> {
-    pub(crate) problem: &'a DynProblem<'a>,
+    pub(crate) problem: Held<'a>,
     pub(crate) which: ParamId,
     pub(crate) weights: Weights,
     guard: Guard,
@@ -79,15 +79,15 @@ pub(crate) struct Probe<'a> {
 
 impl<'a> Probe<'a> {
     pub(crate) fn new(
-        problem: &'a DynProblem<'a>,
+        problem: impl Into<Held<'a>>,
         which: ParamId,
         p: &[f64],
         weights: Weights,
     ) -> Self {
+        let problem = problem.into();
         let n = problem.dim();
         let vector = || vec![0.0; n];
         Probe {
-            problem,
             which,
             weights,
             guard: Guard::new(None),
@@ -101,6 +101,7 @@ impl<'a> Probe<'a> {
             slope: vector(),
             product: vector(),
             metric: vector(),
+            problem,
         }
     }
 

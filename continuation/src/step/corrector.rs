@@ -10,7 +10,7 @@ mod nearly_singular;
 
 use super::stability::StabilityCount;
 use super::{Guard, Refusal, State, Weights};
-use crate::any_problem::DynProblem;
+use crate::any_problem::{DynProblem, Held};
 use crate::branch::Statistics;
 use crate::linalg::{AnyMatrix, Bordered, BorderedFacts, max_abs};
 use crate::problem::{EvalError, ParamId, check_finite, check_pattern};
@@ -63,7 +63,7 @@ const STANDS_STILL: f64 = 1e-6;
 
 /// The problem, its matrices and all work space of the tracer.
 pub(crate) struct Core<'a> {
-    pub(crate) problem: &'a DynProblem<'a>,
+    pub(crate) problem: Held<'a>,
     pub(crate) which: ParamId,
     pub(crate) weights: Weights,
     guard: Guard,
@@ -93,16 +93,16 @@ pub(crate) fn curve_scale(problem: &DynProblem<'_>, which: ParamId, start: f64) 
 
 impl<'a> Core<'a> {
     pub(crate) fn new(
-        problem: &'a DynProblem<'a>,
+        problem: impl Into<Held<'a>>,
         which: ParamId,
         p: &[f64],
         weights: Weights,
         settings: &Settings,
     ) -> Self {
+        let problem = problem.into();
         let n = problem.dim();
         let m = problem.observables().len();
         Core {
-            problem,
             which,
             weights,
             guard: Guard::new(settings.domain),
@@ -114,12 +114,13 @@ impl<'a> Core<'a> {
             jacobian: problem.new_jacobian(),
             bordered: Bordered::new(n, 1),
             facts: None,
-            stability: StabilityCount::new(problem, settings.eigenvalues, settings.counting),
+            stability: StabilityCount::new(&*problem, settings.eigenvalues, settings.counting),
             r: vec![0.0; n],
             du: vec![0.0; n],
             mdu: vec![0.0; n],
             shifted: [vec![0.0; n], vec![0.0; n]],
             observed: [vec![0.0; m], vec![0.0; m]],
+            problem,
         }
     }
 
@@ -290,7 +291,7 @@ impl<'a> Core<'a> {
         let Some(facts) = self.facts else { return Err(Refusal::Singular) };
         x.orientation = facts.det_sign.unwrap_or(0);
         let at = (self.which, &mut self.p[..]);
-        self.stability.judge(self.problem, &mut self.jacobian, facts.core.inertia, at, x);
+        self.stability.judge(&*self.problem, &mut self.jacobian, facts.core.inertia, at, x);
         self.observe(x).map_err(Refusal::Evaluation)
     }
 
@@ -387,7 +388,7 @@ impl<'a> Core<'a> {
             return Weights { unknowns: scale, parameter: scale };
         }
         if let Some(curve) = self.problem.special_points() {
-            let parameter = curve_scale(self.problem, self.which, x.p);
+            let parameter = curve_scale(&*self.problem, self.which, x.p);
             if let Some(unknowns) = curve.scale() {
                 return Weights { unknowns, parameter };
             }
@@ -465,7 +466,7 @@ impl<'a> Core<'a> {
     pub(crate) fn wrong_derivative(&mut self, x: &State) -> Option<WrongDerivative> {
         self.p[self.which.0] = x.p;
         let guard = self.guard;
-        wrong_derivative(self.problem, self.which, (&x.u, &self.p), guard, self.weights.unknowns)
+        wrong_derivative(&*self.problem, self.which, (&x.u, &self.p), guard, self.weights.unknowns)
     }
 
     /// What the count of unstable modes remembers of the latest state.
@@ -492,7 +493,7 @@ impl<'a> Core<'a> {
 
     /// For the analysis of a special point near by.
     pub(crate) fn probe(&self) -> Probe<'a> {
-        Probe::new(self.problem, self.which, &self.p, self.weights).within(self.guard)
+        Probe::new(self.problem.clone(), self.which, &self.p, self.weights).within(self.guard)
     }
 
     /// Makes `x` the state at `z` with this tangent; its stability is not judged.
@@ -512,7 +513,7 @@ impl<'a> Core<'a> {
         if self.stability.wants_eigenvalues() {
             self.assemble(&x.u, x.p)?;
             let at = (&x.u[..], &self.p[..]);
-            self.stability.eigenvalues(self.problem, &mut self.jacobian, at, &mut x.eigenvalues);
+            self.stability.eigenvalues(&*self.problem, &mut self.jacobian, at, &mut x.eigenvalues);
         }
         self.observe(x)
     }

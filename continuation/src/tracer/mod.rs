@@ -24,6 +24,7 @@ mod examine;
 mod input;
 mod narrow;
 mod out_of_points;
+mod owning;
 mod plateau;
 mod predict;
 mod restart;
@@ -40,7 +41,7 @@ pub use input::{Progress, TraceError};
 pub(crate) use resume::Baton;
 pub(crate) use snapshot::Snapshot;
 
-use crate::any_problem::DynProblem;
+use crate::any_problem::Held;
 use crate::branch::{Branch, Doubt, Event, Point, Statistics, Stop, StopReason};
 use crate::events::{Detector, Hidden, Plateau, Stretch, Watch};
 use crate::newton::{self, NewtonSettings};
@@ -134,12 +135,14 @@ impl<'a> Tracer<'a> {
 
     /// [`Tracer::new`] of a problem of unknown type.
     pub(crate) fn of(
-        problem: &'a DynProblem<'a>,
+        held: impl Into<Held<'a>>,
         parameter: &str,
         u: &[f64],
         p: &[f64],
         settings: Settings,
     ) -> Result<Self, TraceError> {
+        let held = held.into();
+        let problem = &*held;
         settings.validate()?;
         check_sizes(problem)?;
         let n = problem.dim();
@@ -178,7 +181,7 @@ impl<'a> Tracer<'a> {
 
         let increasing = increases(&settings, start.p);
         let unit = Weights { unknowns: 1.0, parameter: 1.0 };
-        let mut core = Core::new(problem, ParamId(which), p, unit, &settings);
+        let mut core = Core::new(held.clone(), ParamId(which), p, unit, &settings);
         core.statistics.newton_iterations += report.iterations;
         let crossing = begin::at(&mut core, &mut start, increasing, range, &everywhere)?;
         let mut tracer = Self::set_up(core, start, p, settings, range)?;
@@ -194,9 +197,8 @@ impl<'a> Tracer<'a> {
         settings: Settings,
         range: f64,
     ) -> Result<Self, TraceError> {
-        let problem = core.problem;
         let size = StepSize::new(&settings, range / core.weights.parameter, start.length);
-        let detector = detector(problem, &[], &settings)?;
+        let detector = detector(&*core.problem, &[], &settings)?;
         let extent = unbounded::extent(&mut core, &start);
         let mut tracer = Tracer {
             core,
@@ -253,8 +255,7 @@ impl<'a> Tracer<'a> {
     /// # Errors
     /// When an observable is unknown, or has no value at the start.
     pub fn watching(mut self, watches: &[Watch]) -> Result<Self, TraceError> {
-        let problem = self.core.problem;
-        self.detector = detector(problem, watches, &self.settings)?;
+        self.detector = detector(&*self.core.problem, watches, &self.settings)?;
         self.core
             .want(self.detector.observables(), &mut self.start)
             .map_err(|error| TraceError::Tangent(Refusal::Evaluation(error)))?;
@@ -327,7 +328,7 @@ impl<'a> Tracer<'a> {
     }
 
     pub(crate) fn into_branch(self, points: Vec<Point>) -> Branch {
-        let problem = self.core.problem;
+        let problem = &self.core.problem;
         let stopped =
             self.stop.unwrap_or(Stop { reason: StopReason::Interrupted, detail: String::new() });
         Branch {

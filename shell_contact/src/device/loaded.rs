@@ -2,7 +2,6 @@
 
 use super::{Device, DeviceError, Loading};
 use crate::contact::{ContactProblem, parameter};
-use crate::film::{Film, Potential};
 use crate::observables::{self, Observation};
 use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::{Arrow, SymmetricBand};
@@ -27,18 +26,18 @@ const NAMES: [&str; observables::NAMES.len() + 1] = {
 ///
 /// The metric is that of the shell plus `dz0²`, lengths in `R0`.
 #[derive(Debug, Clone)]
-pub struct LoadedProblem<'c, F: Potential = Film> {
-    contact: &'c ContactProblem<F>,
+pub struct LoadedProblem<'c> {
+    contact: &'c ContactProblem,
     device: Device,
-    parameters: [Parameter; parameter::COUNT],
+    parameters: Vec<Parameter>,
 }
 
-impl<'c, F: Potential> LoadedProblem<'c, F> {
+impl<'c> LoadedProblem<'c> {
     /// The shell under a device with a freedom of its own.
     ///
     /// # Errors
     /// For a grip, and for a stiffness that is not positive.
-    pub fn new(contact: &'c ContactProblem<F>, device: Device) -> Result<Self, DeviceError> {
+    pub fn new(contact: &'c ContactProblem, device: Device) -> Result<Self, DeviceError> {
         let own = |unit, scale| Parameter { name: device.parameter_name(), unit, scale };
         let first = match device {
             Device::Grip => return Err(DeviceError::Grip),
@@ -50,9 +49,8 @@ impl<'c, F: Potential> LoadedProblem<'c, F> {
                 return Err(DeviceError::Stiffness { value: stiffness });
             }
         };
-        let mut parameters: [Parameter; parameter::COUNT] =
-            std::array::from_fn(|k| contact.parameters()[k].clone());
-        parameters[0] = first;
+        let others = contact.parameters().iter().skip(1).cloned();
+        let parameters = [first].into_iter().chain(others).collect();
         Ok(LoadedProblem { contact, device, parameters })
     }
 
@@ -62,7 +60,7 @@ impl<'c, F: Potential> LoadedProblem<'c, F> {
     }
 
     /// The shell without its device.
-    pub fn contact(&self) -> &'c ContactProblem<F> {
+    pub fn contact(&self) -> &'c ContactProblem {
         self.contact
     }
 
@@ -84,7 +82,7 @@ impl<'c, F: Potential> LoadedProblem<'c, F> {
     fn inner<'x>(&self, x: &'x [f64], p: &[f64]) -> (&'x [f64], [f64; parameter::COUNT]) {
         let (u, z0) = x.split_at(self.contact.dim());
         let z0 = z0.first().copied().unwrap_or(f64::NAN);
-        (u, ContactProblem::<F>::with_plate(p, z0))
+        (u, ContactProblem::with_plate(p, z0))
     }
 
     /// `√k_b/2π`, which turns reported forces into those of the residual.
@@ -109,7 +107,7 @@ impl<'c, F: Potential> LoadedProblem<'c, F> {
     }
 }
 
-impl<F: Potential> Problem for LoadedProblem<'_, F> {
+impl Problem for LoadedProblem<'_> {
     type Jacobian = Arrow<SymmetricBand>;
 
     fn dim(&self) -> usize {
@@ -225,7 +223,7 @@ impl<F: Potential> Problem for LoadedProblem<'_, F> {
     }
 }
 
-impl<F: Potential> LoadedProblem<'_, F> {
+impl LoadedProblem<'_> {
     fn border(
         &self,
         u: &[f64],
@@ -241,7 +239,7 @@ impl<F: Potential> LoadedProblem<'_, F> {
     }
 }
 
-impl<F: Potential> Loading for LoadedProblem<'_, F> {
+impl Loading for LoadedProblem<'_> {
     fn device(&self) -> Device {
         self.device
     }
@@ -287,7 +285,7 @@ impl<F: Potential> Loading for LoadedProblem<'_, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::certify::{H, dot, energy, problem, state};
+    use crate::certify::{H, dot, duals, energy, problem, state};
     use crate::dual::{close, real};
     use crate::params::Law;
     use continuation::{Matrix, check_derivatives};
@@ -296,7 +294,13 @@ mod tests {
     const DEVICES: [Device; 2] = [Device::DeadLoad, Device::Cantilever { stiffness: 7.0 }];
 
     /// The potential written once more, with the plate moved along `a` and `b` too.
-    fn potential(device: Device, contact: &ContactProblem, x: &[f64], dual: [H; 6], z0: H) -> H {
+    fn potential(
+        device: Device,
+        contact: &ContactProblem,
+        x: &[f64],
+        dual: [H; parameter::COUNT],
+        z0: H,
+    ) -> H {
         potential_along(device, contact, x, [&vec![0.0; x.len()], &vec![0.0; x.len()]], dual, z0)
     }
 
@@ -305,7 +309,7 @@ mod tests {
         contact: &ContactProblem,
         x: &[f64],
         [a, b]: [&[f64]; 2],
-        dual: [H; 6],
+        dual: [H; parameter::COUNT],
         z0: H,
     ) -> H {
         let n = contact.dim();
@@ -327,7 +331,7 @@ mod tests {
             let loaded = LoadedProblem::new(&contact, device).unwrap();
             let x = loaded.state(&state(n, 0.3, 0.01), 1.07);
             let p = loaded.parameters_at(0.9);
-            let plain: [H; 6] = std::array::from_fn(|k| real(p[k]));
+            let plain = duals(&p);
             let (mut r, mut alone) = (vec![0.0; n + 1], vec![0.0; n + 1]);
             let (mut j, mut again) = (loaded.new_jacobian(), loaded.new_jacobian());
             loaded.linearise(&x, &p, &mut r, &mut j).unwrap();
@@ -346,7 +350,7 @@ mod tests {
                 again.mul(&b, &mut jb_again);
                 close(dot(&a, &jb), e.eps1eps2, 1e-12, 1e-14 * size(&a, &jb));
                 close(dot(&a, &jb), dot(&a, &jb_again), 1e-13, 1e-14 * size(&a, &jb));
-                for k in 0..parameter::COUNT {
+                for k in 0..p.len() {
                     let mut dual = plain;
                     dual[k].eps2 = 1.0;
                     let still = vec![0.0; n + 1];
@@ -369,7 +373,7 @@ mod tests {
             let loaded = LoadedProblem::new(&contact, device).unwrap();
             let x = loaded.state(&state(contact.dim(), 0.3, 0.01), 1.07);
             let p = loaded.parameters_at(0.9);
-            let plain: [H; 6] = std::array::from_fn(|k| real(p[k]));
+            let plain = duals(&p);
             let half = potential(device, &contact, &x, plain, real(1.07)).re;
             close(loaded.potential(&x, &p).unwrap(), 4.0 * PI * half, 1e-12, 0.0);
         }

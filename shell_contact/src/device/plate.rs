@@ -9,7 +9,7 @@ use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId};
 use std::f64::consts::PI;
 
-impl<F: Potential> ContactProblem<F> {
+impl ContactProblem {
     /// Total potential energy of the whole shell, in `χR0²`: the `energy_total` that is reported.
     ///
     /// # Errors
@@ -17,7 +17,8 @@ impl<F: Potential> ContactProblem<F> {
     pub fn total_energy(&self, u: &[f64], p: &[f64]) -> Result<f64, EvalError> {
         let (c, gas) = self.coefficients(u, p)?;
         let (mesh, film) = (&self.mesh, &self.potential);
-        let parts = with_law!(self, |law| energy::parts(mesh, u, &law, film, &c))?;
+        let parts =
+            with_law!(c.material(self.shell.law), |law| energy::parts(mesh, u, &law, film, &c))?;
         let elastic = parts.stretching + parts.bending + parts.film;
         Ok(4.0 * PI * (elastic + gas.energy(parts.volume) + c.surface_tension * parts.area))
     }
@@ -56,7 +57,7 @@ impl<F: Potential> ContactProblem<F> {
     }
 }
 
-impl<F: Potential> Loading for ContactProblem<F> {
+impl Loading for ContactProblem {
     fn device(&self) -> Device {
         Device::Grip
     }

@@ -3,7 +3,6 @@
 use super::flow::{MotionError, Relaxation, RelaxationSettings};
 use super::{Device, DeviceError, LoadedProblem, Loading};
 use crate::contact::ContactProblem;
-use crate::film::Potential;
 use crate::trace::{ContactBranch, force_watches};
 use continuation::{
     Matrix, NewtonSettings, Problem, Progress, Settings, Stop, StopReason, TraceError, Tracer,
@@ -46,10 +45,7 @@ pub enum StartError {
 ///
 /// # Errors
 /// When there is none.
-pub fn free_start<F: Potential>(
-    contact: &ContactProblem<F>,
-    z0: f64,
-) -> Result<Vec<f64>, StartError> {
+pub fn free_start(contact: &ContactProblem, z0: f64) -> Result<Vec<f64>, StartError> {
     let (mut u, p) = (contact.initial_state(), contact.parameters_at(z0));
     if newton(contact, &mut u, &p, &NewtonSettings::default()).is_ok() {
         let mut hessian = contact.new_jacobian();
@@ -70,8 +66,8 @@ pub fn free_start<F: Potential>(
 ///
 /// # Errors
 /// When there is no start; a branch that ends early is a result.
-pub fn trace_loaded<F: Potential>(
-    loaded: &LoadedProblem<'_, F>,
+pub fn trace_loaded(
+    loaded: &LoadedProblem<'_>,
     start: f64,
     settings: Settings,
     observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
@@ -130,10 +126,7 @@ const NEAREST: f64 = 0.02;
 ///
 /// # Errors
 /// When there is none.
-pub fn loaded_start<F: Potential>(
-    loaded: &LoadedProblem<'_, F>,
-    value: f64,
-) -> Result<Vec<f64>, StartError> {
+pub fn loaded_start(loaded: &LoadedProblem<'_>, value: f64) -> Result<Vec<f64>, StartError> {
     let (contact, device) = (loaded.contact(), loaded.device());
     let far = match device {
         Device::Cantilever { .. } => FAR.max(2.0 * value),

@@ -3,7 +3,6 @@
 use super::walker::{Place, Walker};
 use super::{Device, DeviceError, LoadedProblem};
 use crate::contact::ContactProblem;
-use crate::film::Potential;
 use continuation::{Branch, EvalError, Matrix, Problem};
 
 /// A fold of a device, on the branch traced under a grip.
@@ -50,8 +49,8 @@ pub enum UnderError {
 ///
 /// # Errors
 /// When the branch is not one of this problem.
-pub fn unstable_modes<F: Potential>(
-    contact: &ContactProblem<F>,
+pub fn unstable_modes(
+    contact: &ContactProblem,
     branch: &Branch,
     device: Device,
 ) -> Result<Vec<Option<usize>>, UnderError> {
@@ -76,8 +75,8 @@ pub fn unstable_modes<F: Potential>(
 ///
 /// # Errors
 /// When the branch is not one of this problem.
-pub fn folds<F: Potential>(
-    contact: &ContactProblem<F>,
+pub fn folds(
+    contact: &ContactProblem,
     branch: &Branch,
     device: Device,
 ) -> Result<Vec<DeviceFold>, UnderError> {
@@ -132,8 +131,8 @@ fn refined_counts(mut folds: Vec<DeviceFold>, counts: &[Option<usize>]) -> Vec<D
     folds
 }
 
-struct Search<'c, F: Potential> {
-    walker: Walker<'c, ContactProblem<F>>,
+struct Search<'c> {
+    walker: Walker<'c, ContactProblem>,
     device: Device,
 }
 
@@ -142,7 +141,7 @@ const MOST: usize = 60;
 /// Brackets shorter than this, in `R0`, are not shortened.
 const NARROW: f64 = 1e-14;
 
-impl<F: Potential> Search<'_, F> {
+impl Search<'_> {
     /// Slope of the device's parameter along the branch.
     fn slope(&mut self, at: &Place) -> Result<f64, EvalError> {
         let t = self.walker.tangent(at)?;

@@ -8,8 +8,8 @@
 //! through the plate, or over a barrier, finds a spurious zero of the force on the other side. Such
 //! states are refused by [`crate::energy`] at the potential's [`Wall`], not clamped here.
 //!
-//! One potential per file. [`Film`] is the choice among those that cases have; what is generic over
-//! [`Potential`] takes any other.
+//! One potential per file. [`Film`] is the choice among them: densities and their sums are generic over
+//! [`Potential`], problems take a [`Film`], so that they are compiled in this package and nowhere else.
 
 mod dlvo;
 mod four_two;

@@ -31,6 +31,15 @@ pub struct MembraneJet<T> {
     pub w_mm: T,
 }
 
+/// A constant of the material that a law may depend on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Constant {
+    /// Poisson's ratio `ν`.
+    Poisson,
+    /// The share `b` of Mooney and Rivlin's law.
+    MooneyB,
+}
+
 /// A membrane law.
 pub trait Membrane: Copy {
     /// The energy alone.
@@ -40,6 +49,8 @@ pub trait Membrane: Copy {
     /// `(∂w/∂q − ∂w/∂m)/(q − m)`, regular at `q = m`: the second derivative in a small shear
     /// `C_12` is twice this.
     fn shear<T: Scalar>(&self, q: T, m: T) -> T;
+    /// Derivatives of `(∂w/∂q, ∂w/∂m)` by a constant; zero where the law does not have it.
+    fn slopes_by<T: Scalar>(&self, constant: Constant, q: T, m: T) -> (T, T);
 }
 
 /// Tensions `(τ_ss, τ_φφ)` per deformed length, Eq. (8), from the stretches
@@ -51,10 +62,45 @@ pub fn tensions<L: Membrane>(law: &L, stretch_s: f64, stretch_phi: f64) -> (f64,
     (tau_s, tau_phi)
 }
 
+/// The laws of Eq. (6) once more, of `[q, m, constant]`, for certificates.
+#[cfg(test)]
+pub(crate) mod check {
+    use crate::params::Law;
+    use num_dual::HyperDual64 as H;
+
+    /// The law's energy, with its constants as dual numbers.
+    pub(crate) fn energy(law: Law, [q, m]: [H; 2], poisson: H, b: H) -> H {
+        match law {
+            Law::Hooke => hooke([q, m, poisson]),
+            Law::MooneyRivlin { .. } => mooney_rivlin([q, m, b]),
+            Law::Skalak => skalak([q, m, poisson]),
+        }
+    }
+
+    pub(crate) fn hooke([q, m, nu]: [H; 3]) -> H {
+        let (x, y) = (q - 1.0, m - 1.0);
+        (x * x + nu * x * y * 2.0 + y * y) / ((-(nu * nu) + 1.0) * 8.0)
+    }
+
+    pub(crate) fn mooney_rivlin([q, m, b]: [H; 3]) -> H {
+        let (x, y) = (q - 1.0, m - 1.0);
+        // q + m + 1/(qm) - 3 and 1/q + 1/m + qm - 3, whose digits would cancel
+        let first = (x * x + x * y + y * y + x * y * (x + y)) / (q * m);
+        let second = x * x / q + y * y / m + x * y;
+        ((-b + 1.0) * first + b * second) * (1.0 / 6.0)
+    }
+
+    pub(crate) fn skalak([q, m, nu]: [H; 3]) -> H {
+        let (x, y, i2) = (q - 1.0, m - 1.0, q * m - 1.0);
+        (x * x + y * y + nu / (-nu + 1.0) * i2 * i2) / ((nu + 1.0) * 8.0)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dual::{close, partials};
+    use crate::dual::{close, partials, real};
+    use num_dual::HyperDual64;
 
     fn certify<L: Membrane>(law: L) {
         for q in [0.3, 0.81, 1.0, 1.07, 2.5] {
@@ -84,6 +130,41 @@ mod tests {
         certify(MooneyRivlin { b: 0.3 });
         certify(Skalak { poisson: 0.0 });
         certify(Skalak { poisson: 0.6 });
+    }
+
+    /// The laws once more from their equations, with constants that are dual numbers too.
+    #[test]
+    fn slopes_by_constants_agree_with_dual_numbers() {
+        fn certify<L: Membrane>(
+            law: L,
+            (constant, value): (Constant, f64),
+            energy: impl Fn([HyperDual64; 3]) -> HyperDual64,
+        ) {
+            for q in [0.3, 0.81, 1.0, 1.07, 2.5] {
+                for m in [0.4, 0.95, 1.0, 1.3] {
+                    let d = partials([q, m, value], &energy);
+                    close(law.energy(q, m), d.value, 1e-12, 1e-15);
+                    let (by_q, by_m) = law.slopes_by(constant, q, m);
+                    close(by_q, d.hessian[0][2], 1e-12, 1e-15);
+                    close(by_m, d.hessian[1][2], 1e-12, 1e-15);
+                }
+            }
+        }
+        for poisson in [-0.2, 0.0, 0.5, 0.8] {
+            let at = (Constant::Poisson, poisson);
+            certify(Hooke { poisson }, at, check::hooke);
+            certify(Skalak { poisson }, at, check::skalak);
+            // an incompressible law has no ratio of its own
+            let law = MooneyRivlin { b: 0.3 };
+            certify(law, at, |[q, m, _]| check::mooney_rivlin([q, m, real(0.3)]));
+        }
+        for b in [0.0, 0.3, 1.0] {
+            certify(MooneyRivlin { b }, (Constant::MooneyB, b), check::mooney_rivlin);
+            let law = Hooke { poisson: 0.4 };
+            certify(law, (Constant::MooneyB, b), |[q, m, _]| check::hooke([q, m, real(0.4)]));
+            let law = Skalak { poisson: 0.4 };
+            certify(law, (Constant::MooneyB, b), |[q, m, _]| check::skalak([q, m, real(0.4)]));
+        }
     }
 
     /// Young modulus one: at small strain all laws are Hooke's with their Poisson ratio.

@@ -1,6 +1,6 @@
 //! The Mooney-Rivlin law of an incompressible film, Eq. (6b): strain softening.
 
-use super::{Membrane, MembraneJet};
+use super::{Constant, Membrane, MembraneJet};
 use crate::scalar::Scalar;
 
 /// `w = (1/6)[(1−b)(q + m + 1/(qm) − 3) + b(1/q + 1/m + qm − 3)]`: Eq. (6b) with
@@ -52,5 +52,16 @@ impl Membrane for MooneyRivlin {
         let j = (q * m).recip();
         let jj = j * j;
         jj * g + ((q + m) * jj - 1.0) * h
+    }
+
+    #[inline(always)]
+    fn slopes_by<T: Scalar>(&self, constant: Constant, q: T, m: T) -> (T, T) {
+        if constant != Constant::MooneyB {
+            return (T::constant(0.0), T::constant(0.0));
+        }
+        let j = (q * m).recip();
+        let (iq, im) = (j * m, j * q); // 1/q, 1/m
+        let of = |over: T, other: T| (other - over * over - 1.0 + j * over) * HALF_SHEAR;
+        (of(iq, m), of(im, q))
     }
 }

@@ -1,6 +1,6 @@
 //! Skalak's law: strain hardening, with a separate resistance to change of area.
 
-use super::{Membrane, MembraneJet};
+use super::{Constant, Membrane, MembraneJet};
 use crate::scalar::Scalar;
 
 /// `w = (G_s/4)[I1² + 2 I1 − 2 I2 + C I2²]` with `I1 = q + m − 2`, `I2 = qm − 1`,
@@ -49,5 +49,20 @@ impl Membrane for Skalak {
     fn shear<T: Scalar>(&self, q: T, m: T) -> T {
         let half = 0.25 / (1.0 + self.poisson);
         (-((q * m - 1.0) * self.area_constant()) + 1.0) * half
+    }
+
+    #[inline(always)]
+    fn slopes_by<T: Scalar>(&self, constant: Constant, q: T, m: T) -> (T, T) {
+        if constant != Constant::Poisson {
+            return (T::constant(0.0), T::constant(0.0));
+        }
+        let nu = self.poisson;
+        let half = 0.25 / (1.0 + nu);
+        // of half, and of C times half
+        let by_half = -half / (1.0 + nu);
+        let by_area = self.area_constant() * by_half + half / ((1.0 - nu) * (1.0 - nu));
+        let (x, y) = (q - 1.0, m - 1.0);
+        let i2 = x + y + x * y;
+        (x * by_half + i2 * m * by_area, y * by_half + i2 * q * by_area)
     }
 }

@@ -9,7 +9,6 @@ use super::{
     AsymmetricModes, ModeCount, ModeShape, Parity, Scan, WholeModes, WholeScan, WholeShell,
 };
 use crate::contact::ContactProblem;
-use crate::film::Potential;
 use continuation::{Branch, EvalError, Problem};
 use std::ops::ControlFlow;
 
@@ -71,8 +70,8 @@ pub struct Scanned {
 ///
 /// # Errors
 /// When a point of the branch is no admissible state of the problem.
-pub fn scan_branch<F: Potential>(
-    problem: &ContactProblem<F>,
+pub fn scan_branch(
+    problem: &ContactProblem,
     branch: &Branch,
     settings: &ScanSettings,
     observer: &mut dyn FnMut(usize) -> ControlFlow<()>,

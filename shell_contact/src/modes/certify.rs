@@ -129,7 +129,7 @@ fn surface(
                 let k11 = i11 * b11 + i12 * b12 - 1.0;
                 let k22 = i12 * b12 + i22 * b22 - 1.0;
                 let k12 = 0.5 * (i11 * b12 + i12 * b22 + i12 * b11 + i22 * b12);
-                let membrane = with_law!(problem, |law| law.energy(q, m));
+                let membrane = with_law!(problem.shell, |law| law.energy(q, m));
                 let bending = 0.5
                     * kb
                     * (k11 * k11 + 2.0 * nu * k11 * k22 + k22 * k22 + 2.0 * (1.0 - nu) * k12 * k12);

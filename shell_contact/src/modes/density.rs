@@ -362,6 +362,7 @@ mod tests {
         let k = Coefficients {
             bending: 2e-3,
             poisson: 0.4,
+            b: 0.0,
             surface_tension: 0.07,
             adhesion: 3e-2,
             film: 0.04,

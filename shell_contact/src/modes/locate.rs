@@ -10,7 +10,6 @@
 use super::along::{ScanSettings, Scanned, SymmetryBreaking};
 use super::{AsymmetricModes, ModeCount, ModeShape, Parity, WholeModes, WholeShell};
 use crate::contact::ContactProblem;
-use crate::film::Potential;
 use continuation::linalg::Bordered;
 use continuation::{EvalError, ParamId, Problem};
 
@@ -51,15 +50,15 @@ pub(super) trait Counter {
 }
 
 /// States of the half model: two classes for each number of waves.
-pub(super) struct HalfCounter<'a, F: Potential> {
-    pub(super) problem: &'a ContactProblem<F>,
+pub(super) struct HalfCounter<'a> {
+    pub(super) problem: &'a ContactProblem,
     pub(super) modes: AsymmetricModes<'a>,
 }
 
-impl<F: Potential> Counter for HalfCounter<'_, F> {
-    type Problem = ContactProblem<F>;
+impl Counter for HalfCounter<'_> {
+    type Problem = ContactProblem;
 
-    fn problem(&self) -> &ContactProblem<F> {
+    fn problem(&self) -> &ContactProblem {
         self.problem
     }
 

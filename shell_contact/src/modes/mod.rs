@@ -214,16 +214,17 @@ impl<'a> AsymmetricModes<'a> {
     ///
     /// # Errors
     /// When the state is not admissible.
-    pub fn assemble<F: Potential>(
+    pub fn assemble(
         &mut self,
-        problem: &ContactProblem<F>,
+        problem: &ContactProblem,
         u: &[f64],
         p: &[f64],
     ) -> Result<(), EvalError> {
         let (c, gas) = problem.coefficients(u, p)?;
         let excess = gas.excess(energy::volume(self.mesh, u)?);
         let film = &problem.potential;
-        with_law!(problem, |law| self.assemble_with(&law, film, &c, excess, u))
+        with_law!(c.material(problem.shell.law), |law| self
+            .assemble_with(&law, film, &c, excess, u))
     }
 
     /// Takes the state `u` under the excess pressure `P_G − P_A`.

@@ -67,7 +67,7 @@ pub trait WholeShell: Loading {
     ) -> Result<(), EvalError>;
 }
 
-impl<T: Potential, B: Potential> WholeShell for TwoPlatesProblem<T, B> {
+impl WholeShell for TwoPlatesProblem {
     fn half_mesh(&self) -> &Mesh {
         self.mesh()
     }
@@ -84,7 +84,7 @@ impl<T: Potential, B: Potential> WholeShell for TwoPlatesProblem<T, B> {
 
 /// Held, the equator stays in the mid-plane on the average over `φ` only: modes with waves are not held.
 /// Nor do they move a plate on a spring.
-impl<T: Potential, B: Potential> WholeShell for SupportedProblem<'_, T, B> {
+impl WholeShell for SupportedProblem<'_> {
     fn half_mesh(&self) -> &Mesh {
         self.shell().mesh()
     }
@@ -122,9 +122,9 @@ impl<'a> WholeModes<'a> {
     ///
     /// # Errors
     /// When the state is not admissible.
-    pub fn assemble<T: Potential, B: Potential>(
+    pub fn assemble(
         &mut self,
-        problem: &TwoPlatesProblem<T, B>,
+        problem: &TwoPlatesProblem,
         u: &[f64],
         p: &[f64],
     ) -> Result<(), EvalError> {
@@ -133,9 +133,9 @@ impl<'a> WholeModes<'a> {
     }
 
     /// The same with plates at heights of their own.
-    fn assemble_between<T: Potential, B: Potential>(
+    fn assemble_between(
         &mut self,
-        problem: &TwoPlatesProblem<T, B>,
+        problem: &TwoPlatesProblem,
         u: &[f64],
         c: &[Coefficients; 2],
         gas: &Gas,
@@ -145,7 +145,7 @@ impl<'a> WholeModes<'a> {
         self.inside.iter_mut().for_each(|columns| columns.fill([0.0; ROWS]));
         self.bound = 0.0;
         let (above, below) = &problem.potentials;
-        with_law!(problem, |law| {
+        with_law!(c[0].material(problem.shell.law), |law| {
             self.add(problem, Side::Top, &law, above, &c[0], excess, u)?;
             self.add(problem, Side::Bottom, &law, below, &c[1], excess, u)
         })
@@ -153,9 +153,9 @@ impl<'a> WholeModes<'a> {
 
     /// Adds one half.
     #[allow(clippy::too_many_arguments, reason = "what a density needs to know")]
-    fn add<L: Membrane, F: Potential, T: Potential, B: Potential>(
+    fn add<L: Membrane, F: Potential>(
         &mut self,
-        problem: &TwoPlatesProblem<T, B>,
+        problem: &TwoPlatesProblem,
         side: Side,
         law: &L,
         film: &F,

@@ -31,8 +31,7 @@ use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::{Arrow, SymmetricBand};
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
 use mesh::{LEAST_ANGLE, Layout};
-use moving::{AtRing, MovingMesh};
-use std::cell::RefCell;
+use moving::{AtRing, Moving, MovingMesh};
 use std::f64::consts::FRAC_PI_2;
 
 /// Indices of the parameters in `p`.
@@ -75,8 +74,7 @@ pub struct RingLoadProblem {
     parameters: [Parameter; parameter::COUNT],
     coefficients: usize,
     mass: SymmetricBand,
-    moving: RefCell<MovingMesh>,
-    gradient: RefCell<Vec<f64>>,
+    moving: Moving,
 }
 
 /// The values of the parameters, checked.
@@ -137,8 +135,7 @@ impl RingLoadProblem {
             ],
             coefficients,
             mass,
-            moving: RefCell::new(moving),
-            gradient: RefCell::new(vec![0.0; coefficients + 1]),
+            moving: Moving::new(moving),
         })
     }
 
@@ -181,6 +178,7 @@ impl RingLoadProblem {
         let c = Coefficients {
             bending,
             poisson: self.shell.poisson,
+            b: self.shell.law.b().unwrap_or(0.0),
             surface_tension: 0.0,
             adhesion: 0.0,
             film: 1.0,
@@ -190,7 +188,7 @@ impl RingLoadProblem {
         Ok(Values { alpha, moment, c, gas: Gas { ambient, surface_tension: 0.0, exponent } })
     }
 
-    /// Gradient and matrix.
+    /// The matrix, and the gradient unless `r` is empty.
     fn assemble<L: Membrane>(
         &self,
         law: &L,
@@ -200,19 +198,22 @@ impl RingLoadProblem {
         row: Row,
     ) -> Result<(), EvalError> {
         let Values { alpha, moment, c, gas } = self.values(u, p)?;
-        let mut moving = self.moving.borrow_mut();
+        let mut moving = self.moving.lock();
         let (mesh, ring) = moving.at(alpha);
         let (x, q) = u.split_at(self.coefficients);
-        let (out, _) = r.split_at_mut(self.coefficients);
-        let volume = energy::volume_gradient(mesh, x, out)?;
-        let excess = gas.excess(volume);
+        let (out, _) = r.split_at_mut(r.len().min(self.coefficients));
         j.set_zero();
-        j.core_mut().set_rank_one(gas.stiffness(volume), out);
-        for out in out.iter_mut() {
-            *out *= -excess;
+        let (stiffness, v) = j.core_mut().rank_one_mut();
+        let volume = energy::volume_gradient(mesh, x, v)?;
+        *stiffness = gas.stiffness(volume);
+        let excess = gas.excess(volume);
+        for (out, v) in out.iter_mut().zip(v) {
+            *out = -excess * *v;
         }
         energy::add_linearisation(mesh, x, law, &NoFilm, &c, excess, out, j.core_mut())?;
-        add_ring(ring, u, c.bending * q[0], moment, alpha, r);
+        if !r.is_empty() {
+            add_ring(ring, u, c.bending * q[0], moment, alpha, r);
+        }
         for at in ring {
             let force = c.bending * at.height[0];
             j.column_mut(0)[at.unknown] += force;
@@ -229,7 +230,7 @@ impl RingLoadProblem {
         r: &mut [f64],
     ) -> Result<(), EvalError> {
         let Values { alpha, moment, c, gas } = self.values(u, p)?;
-        let mut moving = self.moving.borrow_mut();
+        let mut moving = self.moving.lock();
         let (mesh, ring) = moving.at(alpha);
         let (x, q) = u.split_at(self.coefficients);
         let (out, _) = r.split_at_mut(self.coefficients);
@@ -274,7 +275,7 @@ impl Problem for RingLoadProblem {
     }
 
     fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
-        with_law!(self, |law| self.residual_as(&law, u, p, r))
+        with_law!(self.shell, |law| self.residual_as(&law, u, p, r))
     }
 
     fn jacobian(
@@ -283,7 +284,7 @@ impl Problem for RingLoadProblem {
         p: &[f64],
         j: &mut Arrow<SymmetricBand>,
     ) -> Result<(), EvalError> {
-        self.linearise(u, p, &mut self.gradient.borrow_mut(), j)
+        self.linearise(u, p, &mut [], j)
     }
 
     fn linearise(
@@ -293,7 +294,7 @@ impl Problem for RingLoadProblem {
         r: &mut [f64],
         j: &mut Arrow<SymmetricBand>,
     ) -> Result<(), EvalError> {
-        with_law!(self, |law| self.assemble(&law, (u, p), r, j, Row::Level))
+        with_law!(self.shell, |law| self.assemble(&law, (u, p), r, j, Row::Level))
     }
 
     fn parameter_derivative(
@@ -304,7 +305,7 @@ impl Problem for RingLoadProblem {
         out: &mut [f64],
     ) -> Result<(), EvalError> {
         let Values { alpha, moment, c, gas } = self.values(u, p)?;
-        let mut moving = self.moving.borrow_mut();
+        let mut moving = self.moving.lock();
         let (x, q) = u.split_at(self.coefficients);
         let (mesh, ring) = moving.at(alpha);
         let ring = *ring;
@@ -313,7 +314,7 @@ impl Problem for RingLoadProblem {
         let (shell, _) = out.split_at_mut(self.coefficients);
         match which {
             parameter::ALPHA => {
-                with_law!(self, |law| moving.angle_derivative(&law, x, &c, &gas, shell));
+                with_law!(self.shell, |law| moving.angle_derivative(&law, x, &c, &gas, shell));
                 let mut slope = -alpha.cos();
                 for at in &ring {
                     let force = c.bending * q[0];
@@ -362,8 +363,7 @@ impl Problem for RingLoadProblem {
         p: &[f64],
         h: &mut Arrow<SymmetricBand>,
     ) -> Result<(), EvalError> {
-        let mut r = self.gradient.borrow_mut();
-        with_law!(self, |law| self.assemble(&law, (u, p), &mut r, h, Row::Height))
+        with_law!(self.shell, |law| self.assemble(&law, (u, p), &mut [], h, Row::Height))
     }
 
     fn multipliers(&self) -> usize {
@@ -402,7 +402,7 @@ impl Problem for RingLoadProblem {
 /// The mesh is only looked at.
 impl RingLoadProblem {
     fn with_mesh<R>(&self, alpha: f64, look: impl FnOnce(&Mesh, &[AtRing; 4], usize) -> R) -> R {
-        let mut moving = self.moving.borrow_mut();
+        let mut moving = self.moving.lock();
         let outside = moving.outside();
         let (mesh, ring) = moving.at(alpha);
         look(mesh, ring, outside)

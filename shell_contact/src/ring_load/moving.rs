@@ -10,6 +10,7 @@ use crate::meridian::{Cell, Local, Mesh, Place};
 use crate::scalar::{Lanes, WIDTH};
 use crate::spline::{Component, Knots, basis_over};
 use std::f64::consts::FRAC_PI_2;
+use std::sync::{Mutex, MutexGuard};
 
 type D = Forward<Lanes>;
 
@@ -46,7 +47,37 @@ pub(super) struct MovingMesh {
     volume_gradient: Vec<f64>,
 }
 
+/// The mesh at the angle at which it was last wanted. Threads that share a problem wait for each other.
+#[derive(Debug)]
+pub(super) struct Moving(Mutex<MovingMesh>);
+
+impl Moving {
+    pub(super) fn new(mesh: MovingMesh) -> Moving {
+        Moving(Mutex::new(mesh))
+    }
+
+    pub(super) fn lock(&self) -> MutexGuard<'_, MovingMesh> {
+        // a thread that panicked may have left it between two angles
+        self.0.lock().unwrap_or_else(|poisoned| {
+            let mut mesh = poisoned.into_inner();
+            mesh.forget();
+            mesh
+        })
+    }
+}
+
+impl Clone for Moving {
+    fn clone(&self) -> Moving {
+        Moving::new(self.lock().clone())
+    }
+}
+
 impl MovingMesh {
+    /// Makes the next angle a new one.
+    fn forget(&mut self) {
+        (self.alpha, self.slopes_at) = (f64::NAN, f64::NAN);
+    }
+
     pub(super) fn new(layout: Layout, alpha: f64) -> MovingMesh {
         let mesh = layout.mesh(alpha);
         let zero =

@@ -91,7 +91,7 @@ impl RingLoadProblem {
         let h = self.thickness(c.bending);
         let (x, q) = u.split_at(u.len().saturating_sub(1));
         self.with_mesh(alpha, |mesh, _, outside| {
-            let parts = with_law!(self, |law| energy::parts(mesh, x, &law, &NoFilm, &c))?;
+            let parts = with_law!(self.shell, |law| energy::parts(mesh, x, &law, &NoFilm, &c))?;
             let ring = alpha.cos() + mesh.displacement_in(x, outside, alpha)[0].1;
             let pole = 1.0 + mesh.displacement_in(x, 0, 0.0)[0].1;
             let highest = highest(mesh, x);

@@ -8,11 +8,10 @@ use super::{
 };
 use crate::bending;
 use crate::certify::{H, dot, state};
-use crate::contact::with_law;
 use crate::dual::{close, real};
 use crate::film::{Film, Potential, check};
 use crate::half::HalfMeridian;
-use crate::membrane::Membrane;
+use crate::membrane;
 use crate::meridian::Mesh;
 use crate::params::{Law, Shell};
 use crate::quadrature::gauss_legendre;
@@ -64,17 +63,15 @@ fn displacement(problem: &TwoPlatesProblem, x: &[f64], s: f64, side: Side) -> [(
 struct Moved<'a> {
     a: &'a [f64],
     b: &'a [f64],
-    p: [H; parameter::COUNT],
+    p: [H; COUNT],
     /// Heights of the upper plate and, negative, of the lower.
     plates: [H; 2],
 }
 
 /// The total energy over `2π` at `u + ε1 a + ε2 b`.
 fn energy(problem: &TwoPlatesProblem, u: &[f64], moved: &Moved<'_>) -> H {
-    let [_, kb, ambient, tension, ..] = moved.p;
+    let [_, kb, ambient, tension, .., exponent, nu, share] = moved.p;
     let films = [(moved.p[4], moved.p[5]), (moved.p[6], moved.p[7])];
-    let nu = problem.shell().poisson;
-    let exponent = problem.groups().gas_exponent;
     let mesh = problem.mesh();
     let n = mesh.elements();
     let knot = |k: usize| if k <= n { mesh.knots().at(k) } else { PI - mesh.knots().at(2 * n - k) };
@@ -93,9 +90,9 @@ fn energy(problem: &TwoPlatesProblem, u: &[f64], moved: &Moved<'_>) -> H {
             let (z, z1, z2) = (w(0) + cos, w(1) - sin, w(2) - cos);
             let q = r1 * r1 + z1 * z1;
             let hoop = r * (1.0 / sin);
-            let membrane = with_law!(problem, |law| law.energy(q, hoop * hoop));
+            let membrane = membrane::check::energy(problem.shell.law, [q, hoop * hoop], nu, share);
             let (ks, kphi) = bending::strains(r1, r2, z1, z2, real(1.0 / sin));
-            let bend = kb * bending::energy(ks, kphi, nu);
+            let bend = kb * (ks * ks + nu * ks * kphi * 2.0 + kphi * kphi) * 0.5;
             let gap = match side {
                 Side::Top => moved.plates[0] - z,
                 Side::Bottom => z + moved.plates[1],
@@ -108,12 +105,16 @@ fn energy(problem: &TwoPlatesProblem, u: &[f64], moved: &Moved<'_>) -> H {
         }
     }
     let rest = 2.0 / 3.0;
-    let work = ((volume.recip() * rest).powf(exponent - 1.0) - 1.0) * (rest / (exponent - 1.0));
+    let power = exponent - 1.0;
+    let work = (((volume.recip() * rest).ln() * power).exp() - 1.0) * rest / power;
     total + ambient * (volume - rest) + (ambient + tension * 2.0) * work
 }
 
-fn parameters(p: &[f64]) -> [H; parameter::COUNT] {
-    std::array::from_fn(|k| real(p[k]))
+/// As many as there are with a law that has `b`.
+const COUNT: usize = parameter::B.0 + 1;
+
+fn parameters(p: &[f64]) -> [H; COUNT] {
+    std::array::from_fn(|k| real(p.get(k).copied().unwrap_or(0.0)))
 }
 
 /// A problem against `potential(a, b, p)`, its total energy moved along two directions of its
@@ -122,7 +123,7 @@ fn certify<P: Problem>(
     problem: &P,
     x: &[f64],
     p: &[f64],
-    potential: impl Fn(&[f64], &[f64], [H; parameter::COUNT]) -> H,
+    potential: impl Fn(&[f64], &[f64], [H; COUNT]) -> H,
 ) {
     let n = problem.dim();
     let (mut r, mut alone) = (vec![0.0; n], vec![0.0; n]);
@@ -142,7 +143,7 @@ fn certify<P: Problem>(
         again.mul(&b, &mut jb_again);
         close(dot(&a, &jb), e.eps1eps2, 1e-12, 1e-14 * size(&a, &jb));
         close(dot(&a, &jb), dot(&a, &jb_again), 1e-13, 1e-14 * size(&a, &jb));
-        for k in 0..parameter::COUNT {
+        for k in 0..p.len() {
             let mut dual = parameters(p);
             dual[k].eps2 = 1.0;
             let e = potential(&a, &vec![0.0; n], dual);
@@ -214,7 +215,7 @@ fn supports_agree_with_dual_numbers() {
 fn slopes_agree<P: Problem>(problem: &P, x: &[f64], p: &[f64], known: [usize; 2]) {
     let dx = state(x.len(), 1.9, 1.0);
     let observables = problem.observables().len();
-    for which in 0..parameter::COUNT {
+    for which in 0..p.len() {
         let at = |t: f64| {
             let moved: Vec<f64> = x.iter().zip(&dx).map(|(x, d)| x + t * d).collect();
             let mut p = p.to_vec();

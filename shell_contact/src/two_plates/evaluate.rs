@@ -6,12 +6,12 @@
 //! stiff, `γP_G/V̂`.
 
 use super::{Half, Side, TwoPlatesProblem, parameter};
-use crate::contact::with_law;
+use crate::contact::{POISSON_RATIO, with_law};
 use crate::density::{self, Coefficients, Parts};
 use crate::energy;
-use crate::film::Potential;
+use crate::film::{Potential, Wall};
 use crate::gas::Gas;
-use crate::membrane::Membrane;
+use crate::membrane::{Constant, Membrane};
 use crate::plate::{self, Variable};
 use crate::scalar::{Lanes, Scalar};
 use continuation::linalg::SymmetricBand;
@@ -21,7 +21,7 @@ use std::f64::consts::PI;
 const PLATES_CROSS: &str = "the plates cross: their distance is not positive";
 const POLES_MEET: &str = "the dimples meet: the poles cross each other";
 
-impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
+impl TwoPlatesProblem {
     /// The upper half and the lower.
     pub(crate) fn halves(&self) -> [Half<'_>; 2] {
         Side::BOTH.map(|side| Half::new(&self.mesh, side))
@@ -34,7 +34,9 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         unknowns: usize,
         p: &[f64],
     ) -> Result<([Coefficients; 2], Gas), EvalError> {
-        if let Some(k) = (0..parameter::COUNT).find(|&k| !p.get(k).is_some_and(|x| x.is_finite())) {
+        if let Some(k) =
+            (0..self.parameters.len()).find(|&k| !p.get(k).is_some_and(|x| x.is_finite()))
+        {
             return Err(EvalError::NotFinite { at: unknowns + k });
         }
         let value = |ParamId(k): ParamId| p[k];
@@ -50,10 +52,16 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
                 return Err(EvalError::Inadmissible { what, at, value });
             }
         }
+        let poisson = value(parameter::POISSON);
+        if poisson.abs() >= 1.0 {
+            let at = unknowns + parameter::POISSON.0;
+            return Err(EvalError::Inadmissible { what: POISSON_RATIO, at, value: poisson });
+        }
         let surface_tension = value(parameter::SURFACE_TENSION);
         let top = Coefficients {
             bending: value(parameter::BENDING),
-            poisson: self.shell.poisson,
+            poisson,
+            b: p.get(parameter::B.0).copied().unwrap_or(f64::NAN),
             surface_tension,
             adhesion: value(parameter::ADHESION_TOP),
             film: value(parameter::FILM_TOP),
@@ -70,7 +78,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
             Coefficients { plate, ..c }
         });
         let ambient = value(parameter::PRESSURE);
-        let gas = Gas { ambient, surface_tension, exponent: self.groups.gas_exponent };
+        let gas = Gas { ambient, surface_tension, exponent: value(parameter::GAS_EXPONENT) };
         Ok(([top, bottom], gas))
     }
 
@@ -108,7 +116,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     ) -> Result<(), EvalError> {
         let excess = gas.excess(0.5 * self.volume_gradient(u, r)?);
         r.iter_mut().for_each(|r| *r *= -excess);
-        with_law!(self, |law| self.add_gradients(&law, u, c, r))?;
+        with_law!(c[0].material(self.shell.law), |law| self.add_gradients(&law, u, c, r))?;
         self.check_poles(u)
     }
 
@@ -128,7 +136,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         })
     }
 
-    /// The gradient of the energy in `r` and its Hessian in `j`.
+    /// The gradient of the energy in `r`, unless that is empty, and its Hessian in `j`.
     pub(super) fn gradient_and_hessian(
         &self,
         u: &[f64],
@@ -137,14 +145,14 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         r: &mut [f64],
         j: &mut SymmetricBand,
     ) -> Result<(), EvalError> {
-        // r holds v, the gradient of the volume, until the rank-one term has been set
-        let half_volume = 0.5 * self.volume_gradient(u, r)?;
-        let excess = gas.excess(half_volume);
         j.set_zero();
-        j.set_rank_one(0.5 * gas.stiffness(half_volume), r);
-        r.iter_mut().for_each(|r| *r *= -excess);
+        let (stiffness, v) = j.rank_one_mut();
+        let half_volume = 0.5 * self.volume_gradient(u, v)?;
+        *stiffness = 0.5 * gas.stiffness(half_volume);
+        let excess = gas.excess(half_volume);
+        r.iter_mut().zip(v).for_each(|(r, v)| *r = -excess * *v);
         let ([top, bottom], (upper, lower)) = (self.halves(), &self.potentials);
-        with_law!(self, |law| {
+        with_law!(c[0].material(self.shell.law), |law| {
             energy::add_linearisation(&top, u, &law, upper, &c[0], excess, r, j)?;
             energy::add_linearisation(&bottom, u, &law, lower, &c[1], excess, r, j)?;
         });
@@ -165,6 +173,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         let by_excess = match which {
             parameter::PRESSURE => gas.excess_by_ambient(half_volume),
             parameter::SURFACE_TENSION => gas.excess_by_surface_tension(half_volume),
+            parameter::GAS_EXPONENT => gas.excess_by_exponent(half_volume),
             _ => 0.0,
         };
         out.iter_mut().for_each(|out| *out *= -by_excess);
@@ -184,10 +193,33 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
                         density::area_gradient(Lanes::constant(1.0), Lanes::ZERO, at, x)
                     })?;
                 }
+                (None, parameter::POISSON) => {
+                    self.add_gradient_by_constant(half, u, c, walls[k], Constant::Poisson, out)?;
+                }
+                (None, parameter::B) => {
+                    self.add_gradient_by_constant(half, u, c, walls[k], Constant::MooneyB, out)?;
+                }
                 (None, _) => energy::is_clear(half, u, walls[k])?,
             }
         }
         self.check_poles(u)
+    }
+
+    /// Adds the derivative of a half's gradient by a constant of the material.
+    fn add_gradient_by_constant(
+        &self,
+        half: &Half<'_>,
+        u: &[f64],
+        c: &Coefficients,
+        wall: Wall,
+        constant: Constant,
+        out: &mut [f64],
+    ) -> Result<(), EvalError> {
+        with_law!(c.material(self.shell.law), |law| {
+            energy::add_gradient(half, u, wall, out, |at, x| {
+                density::material_gradient(&law, constant, c, at, x)
+            })
+        })
     }
 
     /// `∂E/∂z_p` of the upper plate and of the lower, each away from the equator.
@@ -210,7 +242,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     pub(super) fn parts(&self, u: &[f64], c: &[Coefficients; 2]) -> Result<Parts<f64>, EvalError> {
         let ([top, bottom], (upper, lower)) = (self.halves(), &self.potentials);
         let volume = self.volume(u)?;
-        let (a, b) = with_law!(self, |law| (
+        let (a, b) = with_law!(c[0].material(self.shell.law), |law| (
             energy::half_parts(&top, u, &law, upper, &c[0])?,
             energy::half_parts(&bottom, u, &law, lower, &c[1])?,
         ));

@@ -14,7 +14,6 @@
 
 use super::TwoPlatesProblem;
 use super::search::{SYMMETRIC, distance};
-use crate::film::Potential;
 use continuation::{
     Branch, Crossing, Detail, Direction, EvalError, Event, EventKind, Matrix, Point, Problem,
     Progress, Settings, Shape, Statistics, Stop, StopReason, TraceError, Tracer, Watch, both_ways,
@@ -55,8 +54,8 @@ pub enum ForkError {
 ///
 /// # Errors
 /// When the point is no such state, or no other state is found beside it.
-pub fn leave_symmetry<T: Potential, B: Potential>(
-    problem: &TwoPlatesProblem<T, B>,
+pub fn leave_symmetry(
+    problem: &TwoPlatesProblem,
     symmetric: &Branch,
     at: usize,
     unstable: Option<usize>,
@@ -82,8 +81,8 @@ pub fn leave_symmetry<T: Potential, B: Potential>(
 ///
 /// # Errors
 /// When there is no state near `u`.
-pub fn follow_asymmetric<T: Potential, B: Potential>(
-    problem: &TwoPlatesProblem<T, B>,
+pub fn follow_asymmetric(
+    problem: &TwoPlatesProblem,
     u: &[f64],
     z0: f64,
     settings: Settings,
@@ -101,11 +100,7 @@ pub fn follow_asymmetric<T: Potential, B: Potential>(
 
 /// The part of a branch about its point `inside` that is not the mirror image of the rest: up to where
 /// it is symmetric, or passes from one image to the other between two points.
-fn one_image<T: Potential, B: Potential>(
-    problem: &TwoPlatesProblem<T, B>,
-    mut branch: Branch,
-    inside: usize,
-) -> Branch {
+fn one_image(problem: &TwoPlatesProblem, mut branch: Branch, inside: usize) -> Branch {
     let odd = |k: usize| odd_part(problem, &branch.points[k].u);
     let turns = |from: usize, to: usize| {
         let (a, b) = (odd(from), odd(to));
@@ -153,8 +148,8 @@ fn one_image<T: Potential, B: Potential>(
 
 /// What the engine needs to know of the branch point: a branch that holds it and its far ends, by
 /// which lengths are scaled, the event, and the direction that leaves.
-fn fork<T: Potential, B: Potential>(
-    problem: &TwoPlatesProblem<T, B>,
+fn fork(
+    problem: &TwoPlatesProblem,
     symmetric: &Branch,
     at: usize,
     unstable: Option<usize>,
@@ -219,11 +214,7 @@ fn direction<P: Problem>(problem: &P, mut du: Vec<f64>, dp: f64) -> Direction {
 }
 
 /// The odd vector whose stiffness is nearest to zero, by inverse iteration among odd vectors.
-fn odd_mode<T: Potential, B: Potential>(
-    problem: &TwoPlatesProblem<T, B>,
-    u: &[f64],
-    p: &[f64],
-) -> Result<Vec<f64>, ForkError> {
+fn odd_mode(problem: &TwoPlatesProblem, u: &[f64], p: &[f64]) -> Result<Vec<f64>, ForkError> {
     let mut stiffness = problem.new_jacobian();
     problem.jacobian(u, p, &mut stiffness)?;
     stiffness.factor(f64::EPSILON * stiffness.norm());
@@ -255,7 +246,7 @@ fn odd_mode<T: Potential, B: Potential>(
 }
 
 /// Half of what sets a vector apart from its mirror image.
-fn odd_part<T: Potential, B: Potential>(problem: &TwoPlatesProblem<T, B>, x: &[f64]) -> Vec<f64> {
+fn odd_part(problem: &TwoPlatesProblem, x: &[f64]) -> Vec<f64> {
     x.iter().zip(&problem.reflected(x)).map(|(x, y)| 0.5 * (x - y)).collect()
 }
 

@@ -64,7 +64,7 @@ fn column(name: &str) -> usize {
     super::NAMES.iter().position(|own| *own == name).unwrap_or(usize::MAX)
 }
 
-impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
+impl TwoPlatesProblem {
     /// Whether both plates have the same film.
     fn plates_are_alike(&self) -> bool {
         let (top, bottom) = (self.groups.top, self.groups.bottom);
@@ -78,7 +78,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     }
 }
 
-impl<T: Potential, B: Potential> Loading for TwoPlatesProblem<T, B> {
+impl Loading for TwoPlatesProblem {
     fn device(&self) -> Device {
         Device::Grip
     }
@@ -123,7 +123,7 @@ impl<T: Potential, B: Potential> Loading for TwoPlatesProblem<T, B> {
     }
 }
 
-impl<T: Potential, B: Potential> Loading for SupportedProblem<'_, T, B> {
+impl Loading for SupportedProblem<'_> {
     fn device(&self) -> Device {
         match self.support().spring {
             Some(stiffness) => Device::Cantilever { stiffness: 2.0 * stiffness },

@@ -61,6 +61,7 @@ pub use pairs::{SpringPair, spring_pairs};
 pub use search::{Unconnected, next_unconnected};
 pub use supported::{Support, SupportedProblem};
 
+use crate::contact::{gas_and_material, gas_and_material_of};
 use crate::density::Coefficients;
 use crate::energy;
 use crate::film::{Film, Potential, Wall};
@@ -70,7 +71,6 @@ use crate::plate::Variable;
 use crate::spline::{Component, HALF_BANDWIDTH};
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
-use std::cell::RefCell;
 use std::f64::consts::FRAC_PI_2;
 
 /// Indices of the parameters in `p`.
@@ -93,8 +93,12 @@ pub mod parameter {
     pub const ADHESION_BOTTOM: ParamId = ParamId(6);
     /// Film length `δ_A/R0` of the lower plate.
     pub const FILM_BOTTOM: ParamId = ParamId(7);
-    /// How many there are.
-    pub const COUNT: usize = 8;
+    /// Exponent of the gas `γ`.
+    pub const GAS_EXPONENT: ParamId = ParamId(8);
+    /// Poisson's ratio `ν`.
+    pub const POISSON: ParamId = ParamId(9);
+    /// The share `b` of Mooney and Rivlin's law, for a shell of that law.
+    pub const B: ParamId = ParamId(10);
 }
 
 /// What is in front of one plate.
@@ -162,14 +166,13 @@ impl TwoPlatesGroups {
 
 /// A coated bubble between two plates at `±z0`, free to move between them.
 #[derive(Debug, Clone)]
-pub struct TwoPlatesProblem<T: Potential = Film, B: Potential = Film> {
+pub struct TwoPlatesProblem {
     mesh: Mesh,
     pub(crate) shell: Shell,
-    pub(crate) potentials: (T, B),
+    pub(crate) potentials: (Film, Film),
     groups: TwoPlatesGroups,
-    parameters: [Parameter; parameter::COUNT],
+    parameters: Vec<Parameter>,
     mass: SymmetricBand,
-    volume_gradient: RefCell<Vec<f64>>,
 }
 
 impl TwoPlatesProblem {
@@ -186,7 +189,7 @@ impl TwoPlatesProblem {
     }
 }
 
-impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
+impl TwoPlatesProblem {
     /// The problem with other potentials, of the upper plate and of the lower.
     ///
     /// # Errors
@@ -195,13 +198,13 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         shell: &Shell,
         groups: &TwoPlatesGroups,
         mesh: Mesh,
-        potentials: (T, B),
-    ) -> Result<TwoPlatesProblem<T, B>, ParameterError> {
+        potentials: (Film, Film),
+    ) -> Result<TwoPlatesProblem, ParameterError> {
         shell.validate()?;
         groups.validate()?;
         let scale = |value: f64, otherwise: f64| if value > 0.0 { value } else { otherwise };
         let parameter = |name, unit, scale| Parameter { name, unit, scale };
-        let parameters = [
+        let own = [
             parameter("z0", "R0", 1.0),
             parameter("bending", "chi R0^2", groups.bending),
             parameter("pressure", "chi/R0", scale(groups.pressure, 1.0)),
@@ -211,15 +214,15 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
             parameter("adhesion_bottom", "chi", scale(groups.bottom.adhesion, 1e-3)),
             parameter("film_bottom", "R0", groups.bottom.film),
         ];
+        let parameters = own.into_iter().chain(gas_and_material(shell.law)).collect();
         let unknowns = Half::unknowns(&mesh);
         let mut mass = SymmetricBand::new(unknowns, HALF_BANDWIDTH);
         for side in Side::BOTH {
             // half of either: a step is as long as in the half model
             add_mass(&Half::new(&mesh, side), 0.5, &mut mass);
         }
-        let volume_gradient = RefCell::new(vec![0.0; unknowns]);
         let (shell, groups) = (*shell, *groups);
-        Ok(TwoPlatesProblem { mesh, shell, potentials, groups, parameters, mass, volume_gradient })
+        Ok(TwoPlatesProblem { mesh, shell, potentials, groups, parameters, mass })
     }
 
     /// The unstressed sphere: an equilibrium when there is no film.
@@ -231,7 +234,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     pub fn parameters_at(&self, z0: f64) -> Vec<f64> {
         let g = &self.groups;
         let (top, bottom) = (g.top, g.bottom);
-        vec![
+        let own = [
             z0,
             g.bending,
             g.pressure,
@@ -240,7 +243,8 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
             top.film,
             bottom.adhesion,
             bottom.film,
-        ]
+        ];
+        own.into_iter().chain(gas_and_material_of(g.gas_exponent, &self.shell)).collect()
     }
 
     /// The mesh of either half.
@@ -342,7 +346,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
     }
 }
 
-impl<T: Potential, B: Potential> Problem for TwoPlatesProblem<T, B> {
+impl Problem for TwoPlatesProblem {
     type Jacobian = SymmetricBand;
 
     fn dim(&self) -> usize {
@@ -363,8 +367,7 @@ impl<T: Potential, B: Potential> Problem for TwoPlatesProblem<T, B> {
     }
 
     fn jacobian(&self, u: &[f64], p: &[f64], j: &mut SymmetricBand) -> Result<(), EvalError> {
-        let mut scratch = self.volume_gradient.borrow_mut();
-        self.linearise(u, p, &mut scratch, j)
+        self.linearise(u, p, &mut [], j)
     }
 
     fn linearise(

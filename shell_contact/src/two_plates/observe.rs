@@ -4,7 +4,6 @@ use super::{Half, Side, TwoPlatesProblem, parameter};
 use crate::contact::with_law;
 use crate::density::Coefficients;
 use crate::energy;
-use crate::film::Potential;
 use crate::gas::Gas;
 use crate::half::HalfMeridian;
 use crate::membrane::tensions;
@@ -65,7 +64,7 @@ impl TwoPlatesObservation {
     }
 }
 
-impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
+impl TwoPlatesProblem {
     /// Everything that is reported of a state.
     ///
     /// # Errors
@@ -167,6 +166,7 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
                 let direct = match which {
                     parameter::PRESSURE => 1.0 + gas.excess_by_ambient(half_volume),
                     parameter::SURFACE_TENSION => gas.excess_by_surface_tension(half_volume),
+                    parameter::GAS_EXPONENT => gas.excess_by_exponent(half_volume),
                     _ => 0.0,
                 };
                 volume().map(|slope| Some(direct * dp - 0.5 * gas.stiffness(half_volume) * slope))
@@ -198,7 +198,8 @@ impl<T: Potential, B: Potential> TwoPlatesProblem<T, B> {
         energy::is_clear(&top, u, wall_above)?;
         energy::is_clear(&bottom, u, wall_below)?;
         self.check_poles(u)?;
-        let tensions = |s, phi| with_law!(self, |law| tensions(&law, s, phi));
+        let tensions =
+            |s, phi| with_law!(c[0].material(self.shell.law), |law| tensions(&law, s, phi));
         let mut out = Profile::of(&top, &self.potentials.0, u, &c[0], samples, tensions);
         let below = Profile::of(&bottom, &self.potentials.1, u, &c[1], samples, tensions);
         // the equator is there already

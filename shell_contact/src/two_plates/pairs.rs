@@ -8,7 +8,6 @@
 //! that no branch point of the symmetric curve leads to.
 
 use super::TwoPlatesProblem;
-use crate::film::Potential;
 use continuation::Branch;
 
 /// Two states of a symmetric branch with the same force.
@@ -27,11 +26,7 @@ pub struct SpringPair {
 /// both sides, interpolated linearly between its points; in the order in which their first states
 /// stand on the branch. The mirror image of each is a pair too and left out. Empty if the branch
 /// has no observable `force`, or is not one in `z0`.
-pub fn spring_pairs<T: Potential, B: Potential>(
-    problem: &TwoPlatesProblem<T, B>,
-    symmetric: &Branch,
-    z0: f64,
-) -> Vec<SpringPair> {
+pub fn spring_pairs(problem: &TwoPlatesProblem, symmetric: &Branch, z0: f64) -> Vec<SpringPair> {
     let force = symmetric.observables.iter().position(|name| name == "force");
     let Some(force) = force.filter(|_| symmetric.parameter == "z0") else { return Vec::new() };
     let points = &symmetric.points;

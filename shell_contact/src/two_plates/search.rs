@@ -1,7 +1,6 @@
 //! Asymmetric states that no known branch contains.
 
 use super::{TwoPlatesProblem, spring_pairs};
-use crate::film::Potential;
 use continuation::{Branch, NewtonSettings, Problem, newton};
 
 /// States nearer than this to each other, relative to what sets the asymmetric one apart from its
@@ -26,8 +25,8 @@ pub struct Unconnected {
 /// springs ([`spring_pairs`] of the symmetric branch) and lies on none of the `known` branches of
 /// the problem, nor does its mirror image. `None` when there is no more: traced, the state's branch
 /// joins the known ones for the next call. That nothing is found proves nothing.
-pub fn next_unconnected<T: Potential, B: Potential>(
-    problem: &TwoPlatesProblem<T, B>,
+pub fn next_unconnected(
+    problem: &TwoPlatesProblem,
     symmetric: &Branch,
     known: &[&Branch],
     at: &[f64],

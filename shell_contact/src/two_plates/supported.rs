@@ -11,7 +11,6 @@
 use super::observe::equator;
 use super::{NAMES, TwoPlatesObservation, TwoPlatesProblem, parameter};
 use crate::density::Coefficients;
-use crate::film::{Film, Potential};
 use crate::gas::Gas;
 use crate::half::HalfMeridian;
 use crate::observables::Profile;
@@ -48,23 +47,20 @@ pub struct Support {
 /// for each of the others. `Λ = (√k_b/2π)(F_top − F_bottom)` at an equilibrium. `p[0]` is `z0`, or
 /// `base` with a spring.
 #[derive(Debug, Clone)]
-pub struct SupportedProblem<'c, T: Potential = Film, B: Potential = Film> {
-    shell: &'c TwoPlatesProblem<T, B>,
+pub struct SupportedProblem<'c> {
+    shell: &'c TwoPlatesProblem,
     support: Support,
-    parameters: [Parameter; parameter::COUNT],
+    parameters: Vec<Parameter>,
     /// `∂w(π/2)/∂u`
     equator: Vec<f64>,
 }
 
-impl<'c, T: Potential, B: Potential> SupportedProblem<'c, T, B> {
+impl<'c> SupportedProblem<'c> {
     /// The shell with a support.
     ///
     /// # Errors
     /// When the stiffness is not positive.
-    pub fn new(
-        shell: &'c TwoPlatesProblem<T, B>,
-        support: Support,
-    ) -> Result<Self, ParameterError> {
+    pub fn new(shell: &'c TwoPlatesProblem, support: Support) -> Result<Self, ParameterError> {
         if let Some(value) = support.spring.filter(|k| !(*k > 0.0 && k.is_finite())) {
             return Err(ParameterError::OutOfRange {
                 key: "plate.top.stiffness",
@@ -73,10 +69,9 @@ impl<'c, T: Potential, B: Potential> SupportedProblem<'c, T, B> {
                 remedy: "k_c in sqrt(chi k_b)/R0; a rigid plate needs none",
             });
         }
-        let mut parameters: [Parameter; parameter::COUNT] =
-            std::array::from_fn(|k| shell.parameters()[k].clone());
-        if support.spring.is_some() {
-            parameters[0].name = "base";
+        let mut parameters = shell.parameters().to_vec();
+        if let (Some(_), Some(first)) = (support.spring, parameters.first_mut()) {
+            first.name = "base";
         }
         let [top, _] = shell.halves();
         let mut equator = vec![0.0; shell.dim()];
@@ -91,7 +86,7 @@ impl<'c, T: Potential, B: Potential> SupportedProblem<'c, T, B> {
     }
 
     /// The shell and its plates.
-    pub fn shell(&self) -> &'c TwoPlatesProblem<T, B> {
+    pub fn shell(&self) -> &'c TwoPlatesProblem {
         self.shell
     }
 
@@ -262,7 +257,7 @@ impl<'c, T: Potential, B: Potential> SupportedProblem<'c, T, B> {
     }
 }
 
-impl<T: Potential, B: Potential> Problem for SupportedProblem<'_, T, B> {
+impl Problem for SupportedProblem<'_> {
     type Jacobian = Arrow<SymmetricBand>;
 
     fn dim(&self) -> usize {
@@ -285,8 +280,7 @@ impl<T: Potential, B: Potential> Problem for SupportedProblem<'_, T, B> {
 
     fn jacobian(&self, x: &[f64], p: &[f64], j: &mut Self::Jacobian) -> Result<(), EvalError> {
         let (u, c, gas) = self.inner(x, p)?;
-        let mut scratch = self.shell.volume_gradient.borrow_mut();
-        self.shell.gradient_and_hessian(u, &c, &gas, &mut scratch, j.core_mut())?;
+        self.shell.gradient_and_hessian(u, &c, &gas, &mut [], j.core_mut())?;
         self.border(u, &c, &gas, j)
     }
 

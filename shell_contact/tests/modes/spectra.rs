@@ -147,6 +147,7 @@ fn pressed_sphere_buckles_at_zoellys_pressures_for_every_wave_number() {
     let c = Coefficients {
         bending: KB,
         poisson: NU,
+        b: 0.0,
         surface_tension: 0.0,
         adhesion: 0.0,
         film: 1.0,

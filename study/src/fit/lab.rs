@@ -288,6 +288,11 @@ impl Lab {
                 setup.spring_constant_sd = 0.0;
             }
         }
+        if law != LawName::MooneyRivlin {
+            // no unknown of the other laws
+            setup.free.retain(|key| *key != Key::MooneyB);
+            setup.priors.retain(|prior| prior.key != Key::MooneyB);
+        }
         let radius = Key::Radius;
         if setup.base[radius].is_nan() {
             return Err(
@@ -300,6 +305,23 @@ impl Lab {
             setup.range = Some(parse_range(range)?);
         }
         Ok(setup)
+    }
+
+    /// Whether a fit by one law can have what is asked of it.
+    ///
+    /// # Errors
+    /// When the share `b` is looked for and the law has none.
+    pub fn allows(law: LawName, wishes: Wishes<'_>) -> Result<(), String> {
+        let is_b = |name: &str| key("", name).is_ok_and(|key| key == Key::MooneyB);
+        let named = |flag, names: &[String]| names.iter().any(|name| is_b(name)).then_some(flag);
+        let prior = |text: &String| text.split_once('=').is_some_and(|(name, _)| is_b(name));
+        let stated = wishes.prior.iter().any(prior).then_some("--prior");
+        match named("--free", wishes.free).or(stated) {
+            Some(flag) if law != LawName::MooneyRivlin => {
+                Err(format!("{flag} b: the law {} has no b; only mooney-rivlin has", law.name()))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// How a file is laid out, with what is known of the lever; wrong options are told by [`Lab::setup`].

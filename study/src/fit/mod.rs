@@ -4,6 +4,7 @@ pub mod files;
 pub mod lab;
 pub mod plan;
 
+use crate::case::plain_name;
 use identify::data::read::LARGEST;
 use identify::data::{jpk, read};
 use identify::fit::Setup;
@@ -95,6 +96,12 @@ impl Source {
             Some(number) => format!("{file}, curve {number}"),
         }
     }
+
+    /// Its name among files: that of its file, and its number in a map.
+    pub fn stem(&self) -> String {
+        let name = plain_name(&self.path.file_stem().unwrap_or_default().to_string_lossy());
+        self.number.map_or(name.clone(), |number| format!("{name}-{number}"))
+    }
 }
 
 /// The curves of the files: of a map all, unless `data.curve` chooses one.
@@ -163,6 +170,9 @@ pub fn fit_file(
             }
         },
     };
+    if let [law] = chosen[..] {
+        Lab::allows(law, wishes).map_err(input)?;
+    }
     let mut found: Vec<(LawName, Setup, Result<Identification, FitError>)> = Vec::new();
     let laws = chosen.len() as f64;
     for (done, law) in chosen.into_iter().enumerate() {

@@ -50,6 +50,7 @@ pub fn planned(case: &ResolvedCase, lab: &Lab, wishes: Wishes<'_>) -> Result<Pla
         Law::MooneyRivlin { .. } => LawName::MooneyRivlin,
         Law::Skalak => LawName::Skalak,
     };
+    Lab::allows(law, wishes)?;
     let setup = lab.setup(law, None, wishes)?;
     let reach = f64::from(setup.contacts) * setup.base[Key::Radius];
     let experiment = Experiment {

@@ -30,6 +30,7 @@ impl Pressurised {
             coefficients: Coefficients {
                 bending,
                 poisson,
+                b: 0.0,
                 surface_tension: 0.0,
                 adhesion: 0.0,
                 film: 0.1,

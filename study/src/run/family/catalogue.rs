@@ -47,7 +47,7 @@ impl Family for CatalogueCase {
 
     fn second_parameter(&self, _: &ResolvedCase, key: &str) -> Result<Second, MapError> {
         let (value, key) = map::value(self, key)?;
-        Ok(Second { key, value, usual: None })
+        Ok(Second { key, value, usual: None, limits: None })
     }
 
     fn attempt(

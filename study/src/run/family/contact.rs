@@ -110,8 +110,7 @@ impl Family for ContactCase {
     }
 
     fn second_parameter(&self, _: &ResolvedCase, key: &str) -> Result<Second, MapError> {
-        let (value, key) = map::value(self, key)?;
-        Ok(Second { key, value, usual: None })
+        map::second(self, key)
     }
 
     fn attempt(

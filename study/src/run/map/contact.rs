@@ -1,40 +1,81 @@
-//! Maps of the contact problem: the plate distance and one of the dimensionless groups.
+//! Maps of the contact problem: the plate distance and one of its other parameters.
 
 use super::curves::curves;
-use super::{Attempt, MapError, Task};
-use crate::case::{ContactCase, Groups};
+use super::{Attempt, Limits, MapError, Second, Task};
+use crate::case::keys::{FRACTION, NOT_NEGATIVE, POISSON_RATIOS, POISSON_SKALAK};
+use crate::case::{ContactCase, Law};
 use crate::closest::closest;
 use crate::run::contact::{no_start, problem};
 use crate::run::{Observer, listen, settings};
 use shell_contact::trace_contact;
 
-/// The groups that are parameters of the problem, in the order in which case files have them.
-const KEYS: [&str; 5] = ["bending", "pressure", "adhesion", "film", "surface_tension"];
+/// The keys that are parameters of the problem, in the order in which case files have them.
+const KEYS: [&str; 8] =
+    ["bending", "pressure", "adhesion", "film", "surface_tension", "gas_exponent", "poisson", "b"];
+/// Poisson's ratios up to which a map goes unless it is told: the equations are singular at -1 and 1.
+const RATIOS: f64 = 0.99;
 
-fn group<'g>(groups: &'g mut Groups, key: &str) -> Option<&'g mut f64> {
+/// Where the value of a key is kept; `b` only with a law that has it.
+fn value_mut<'c>(contact: &'c mut ContactCase, key: &str) -> Option<&'c mut f64> {
+    let groups = &mut contact.groups;
     Some(match key {
         "bending" => &mut groups.bending,
         "pressure" => &mut groups.pressure,
         "adhesion" => &mut groups.adhesion,
         "film" => &mut groups.film,
         "surface_tension" => &mut groups.surface_tension,
+        "gas_exponent" => &mut groups.gas_exponent,
+        "poisson" => &mut contact.shell.poisson,
+        "b" => match &mut contact.shell.law {
+            Law::MooneyRivlin { b } => b,
+            Law::Hooke | Law::Skalak => return None,
+        },
         _ => return None,
     })
 }
 
-/// The value of a group in the case, and its plain name.
-pub(in crate::run) fn value(contact: &ContactCase, key: &str) -> Result<(f64, String), MapError> {
-    let name = key.strip_prefix("dimensionless.").unwrap_or(key);
-    if let Some(value) = group(&mut contact.groups.clone(), name) {
-        return Ok((*value, name.to_string()));
+/// The size that a parameter usually has, and where it ends, for those that have an end above zero.
+fn limits(law: Law, key: &str) -> (Option<f64>, Option<Limits>) {
+    let within = |usual, low, high, allowed| (Some(usual), Some(Limits { low, high, allowed }));
+    match (key, law) {
+        ("gas_exponent", _) => within(1.4, 0.0, f64::INFINITY, NOT_NEGATIVE),
+        // Skalak's C is not negative
+        ("poisson", Law::Skalak) => within(0.5, 0.0, RATIOS, POISSON_SKALAK),
+        ("poisson", _) => within(0.5, -RATIOS, 0.5, POISSON_RATIOS),
+        ("b", _) => within(1.0, 0.0, 1.0, FRACTION),
+        _ => (None, None),
     }
-    let allowed = KEYS.map(str::to_string).to_vec();
-    if name == "z0" {
-        return Err(MapError::SameParameter { key: key.to_string(), allowed });
+}
+
+/// The second parameter that a key names.
+pub(in crate::run) fn second(contact: &ContactCase, key: &str) -> Result<Second, MapError> {
+    let table =
+        |name: &str| if matches!(name, "poisson" | "b") { "shell" } else { "dimensionless" };
+    let name = match key.split_once('.') {
+        Some((given, name)) if given == table(name) => name,
+        _ => key,
+    };
+    let law = contact.shell.law;
+    if let Some(value) = value_mut(&mut contact.clone(), name) {
+        let (usual, limits) = limits(law, name);
+        return Ok(Second { key: name.to_string(), value: *value, usual, limits });
     }
-    let suggestion = closest(name, KEYS).map(str::to_string);
-    let problem = "the contact problem".to_string();
-    Err(MapError::UnknownKey { key: key.to_string(), problem, allowed, suggestion })
+    let known = |name: &&str| value_mut(&mut contact.clone(), name).is_some();
+    let allowed: Vec<&str> = KEYS.into_iter().filter(known).collect();
+    let suggestion = closest(name, allowed.iter().copied()).map(str::to_string);
+    let allowed = allowed.into_iter().map(str::to_string).collect();
+    let key = key.to_string();
+    Err(match name {
+        "z0" => MapError::SameParameter { key, allowed },
+        "b" => {
+            let problem = format!("a shell of the law {law}");
+            MapError::UnknownKey { key, problem, allowed, suggestion: None }
+        }
+        _ => {
+            let problem = "the contact problem".to_string();
+            MapError::UnknownKey { key, problem, allowed, suggestion }
+        }
+    })
 }
 
 /// The base branch with the second parameter `at` a value, and its curves.
@@ -45,7 +86,7 @@ pub(in crate::run) fn attempt(
     observer: &mut Observer<'_>,
 ) -> Result<Attempt, MapError> {
     let mut contact = contact.clone();
-    if let Some(value) = group(&mut contact.groups, &task.key) {
+    if let Some(value) = value_mut(&mut contact, &task.key) {
         *value = at;
     }
     let start = task.case.path.start;

@@ -12,6 +12,7 @@ pub(super) mod ring_load;
 
 use super::{Observer, RunError};
 use crate::case::ResolvedCase;
+use crate::case::keys::Range;
 use crate::record::{MapCurve, MapPoint, MapResult};
 use continuation::{Stop, StopReason};
 use curves::Found;
@@ -81,6 +82,18 @@ pub enum MapError {
         /// The least that is allowed.
         least: f64,
     },
+    /// A bound that the second parameter may not have.
+    #[error("{bound} = {value}: {key} must be {allowed}")]
+    Bound {
+        /// The bound's key.
+        bound: &'static str,
+        /// Its value.
+        value: f64,
+        /// The second parameter.
+        key: String,
+        /// What it may be, in words.
+        allowed: &'static str,
+    },
     /// The case lies outside its own map.
     #[error("{key} = {value} of the case is not between map.from = {} and map.to = {}", .range.0, .range.1)]
     Outside {
@@ -117,6 +130,16 @@ pub(super) struct Second {
     pub(super) key: String,
     pub(super) value: f64,
     pub(super) usual: Option<f64>,
+    pub(super) limits: Option<Limits>,
+}
+
+/// Where a parameter ends.
+pub(super) struct Limits {
+    /// A map goes as far unless it is told.
+    pub(super) low: f64,
+    pub(super) high: f64,
+    /// What it may be told.
+    pub(super) allowed: Range,
 }
 
 /// The base branch with the second parameter at a value, and its curves.
@@ -132,8 +155,8 @@ pub(super) fn map(
     observer: &mut Observer<'_>,
 ) -> Result<MapResult, MapError> {
     let clock = Instant::now();
-    let Second { key, value, usual } = second;
-    let range = range::bounds(&key, value, usual, case.map)?;
+    let range = range::bounds(&second, case.map)?;
+    let Second { key, value, .. } = second;
     let task = Task { case, key, value, range };
     let attempt = |at: f64, observer: &mut Observer<'_>| attempts(&task, at, observer);
     let mut best = attempt(value, observer)?;
