@@ -4,6 +4,11 @@ use super::*;
 use study::record::Pictures;
 use study::record::view::{Examined, Mark, Profile, Shape, Stability};
 
+/// A case whose pictures look as usual.
+fn fig12() -> ResolvedCase {
+    study::case::load("fig12".as_ref(), &[], &[]).unwrap().case
+}
+
 /// A force curve with two folds in the distance, as strong adhesion makes them.
 fn two_folds() -> Pictures {
     let n = 400;
@@ -110,7 +115,7 @@ fn two_folds() -> Pictures {
 
 #[test]
 fn a_branch_with_two_folds_makes_all_pictures() {
-    let files = draw_all(&two_folds()).unwrap();
+    let files = draw_all(&fig12(), &two_folds()).unwrap();
     assert_eq!(files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), NAMES);
     if let Some(folder) = std::env::var_os("ARCLEN_TEST_PICTURES") {
         for (name, svg) in &files {
@@ -162,7 +167,7 @@ fn degenerate_data_are_drawn_without_complaint() {
                     diagram: Some((String::new(), String::new(), curve)),
                     states: Vec::new(),
                 };
-                for (name, svg) in draw_all(&pictures).unwrap() {
+                for (name, svg) in draw_all(&fig12(), &pictures).unwrap() {
                     let svg = String::from_utf8(svg).unwrap();
                     assert!(!svg.contains("NaN") && !svg.contains('\u{7}'), "{name}");
                     assert!(svg.contains("a &lt; b &amp;"), "{name}");
@@ -170,13 +175,14 @@ fn degenerate_data_are_drawn_without_complaint() {
             }
         }
     }
-    assert!(draw_all(&Pictures::default()).unwrap().is_empty());
+    assert!(draw_all(&fig12(), &Pictures::default()).unwrap().is_empty());
 }
 
 #[test]
 fn shapes_have_true_proportions() {
     let shape = Shape { sigma: vec![0.0, 1.0], z: vec![0.5, 0.0], plate: 0.5, ..Shape::default() };
-    let files = draw_all(&Pictures { shapes: vec![shape], ..Pictures::default() }).unwrap();
+    let files =
+        draw_all(&fig12(), &Pictures { shapes: vec![shape], ..Pictures::default() }).unwrap();
     let svg = String::from_utf8(files[0].1.clone()).unwrap();
     // the last quarter drawn before the plates: two points, half as high as wide
     let points: Vec<Vec<f64>> = svg

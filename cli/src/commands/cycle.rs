@@ -10,23 +10,29 @@ use pictures::{REPORT, cycle_report};
 
 use crate::terminal;
 use study::case::ResolvedCase;
-use study::record::{CycleResult, branch_csv, cycle_json, cycle_summary, cycle_table};
+use study::record::{CycleResult, Laboratory, branch_csv, cycle_json, cycle_summary, cycle_table};
 use study::run::run_cycle;
 use study::store::Folder;
 
 const CYCLE: &str = "cycle.json";
 const PATH: &str = "cycle.csv";
 const BRANCH: &str = "branch.csv";
+/// The same in physical units.
+const PHYSICAL: [&str; 2] = ["cycle-physical.csv", "branch-physical.csv"];
 const CASE: &str = "case.toml";
 
 /// Travel a case to and fro.
 pub(super) fn cycle(arguments: &CycleArguments, listen: &Listen<'_>) -> Exit {
-    let case =
-        match super::loaded(&arguments.case, &arguments.case.overrides(), arguments.output.quiet) {
-            Ok(loaded) => loaded.case,
-            Err(exit) => return exit,
-        };
-    let names = [CYCLE, PATH, BRANCH, CASE, REPORT, pictures::LOOP];
+    let overrides = arguments.case.with_looks(&arguments.output);
+    let case = match super::loaded(&arguments.case, &overrides, arguments.output.quiet) {
+        Ok(loaded) => loaded.case,
+        Err(exit) => return exit,
+    };
+    let names: Vec<&str> =
+        [CYCLE, PATH, BRANCH, CASE, REPORT, pictures::LOOP, pictures::PHYSICAL_LOOP]
+            .into_iter()
+            .chain(PHYSICAL)
+            .collect();
     let folder = match arguments.output.folder(&case.name, &names, &arguments.case.inputs()) {
         Ok(folder) => folder,
         Err(exit) => return exit,
@@ -39,10 +45,7 @@ pub(super) fn cycle(arguments: &CycleArguments, listen: &Listen<'_>) -> Exit {
             terminal::error(&error.advised());
             Exit::BadInput
         }
-        Ok(mut result) => {
-            result.pictures.title = pictures::titled(&result.pictures.title, &case);
-            deliver(arguments, &case, &result, folder.as_ref())
-        }
+        Ok(result) => deliver(arguments, &case, &result, folder.as_ref()),
     }
 }
 
@@ -58,11 +61,16 @@ fn deliver(
         made.file(CASE, case.to_toml());
         made.attempt(PATH, branch_csv(&cycle_table(result)));
         made.attempt(BRANCH, branch_csv(&result.branch));
+        if let Some(laboratory) = Laboratory::of(case, &[&result.branch]) {
+            let path = laboratory.table(case, &cycle_table(result));
+            made.attempt(PHYSICAL[0], branch_csv(&path));
+            made.attempt(PHYSICAL[1], branch_csv(&laboratory.table(case, &result.branch)));
+        }
         if arguments.report {
-            made.attempt(REPORT, cycle_report(result));
+            made.attempt(REPORT, cycle_report(case, result));
         }
         if !arguments.output.no_pictures {
-            made.files(pictures::draw_cycle(&result.pictures));
+            made.files(pictures::draw_cycle(case, result));
         }
     }
     let complete = result.stopped_because.is_complete();
@@ -70,7 +78,7 @@ fn deliver(
         folder,
         made,
         &arguments.case.inputs(),
-        |written| cycle_summary(result, written),
+        |written| cycle_summary(case, result, written),
         complete,
     )
 }

@@ -26,12 +26,13 @@ impl OutputArguments {
         names: &[&str],
         inputs: &[PathBuf],
     ) -> Result<Option<Folder>, Exit> {
-        let pixels: Vec<String> = names
+        let others: Vec<String> = names
             .iter()
-            .filter_map(|name| Some(format!("{}.png", name.strip_suffix(".svg")?)))
+            .filter_map(|name| name.strip_suffix(".svg"))
+            .flat_map(|stem| ["png", "pdf"].map(|ending| format!("{stem}.{ending}")))
             .collect();
         let names: Vec<&str> =
-            names.iter().copied().chain(pixels.iter().map(String::as_str)).collect();
+            names.iter().copied().chain(others.iter().map(String::as_str)).collect();
         let claimed = self.place(case).map(|path| Folder::claim(&path, &names, inputs));
         claimed.transpose().map_err(|error| {
             terminal::error(&error.advised());
@@ -133,26 +134,29 @@ impl Made {
         }
     }
 
-    /// Pictures in the formats that are wanted; those that have a PNG already stay as they are.
+    /// Pictures in the formats that are wanted; those that have a PNG already keep it and their SVG.
     fn format(&mut self, formats: &[Format]) {
         let made = std::mem::take(&mut self.files);
         let names: Vec<String> = made.iter().map(|(name, _)| name.clone()).collect();
         for (name, bytes) in made {
-            let Some(png) = name.strip_suffix(".svg").map(|stem| format!("{stem}.png")) else {
+            let Some(stem) = name.strip_suffix(".svg").map(str::to_owned) else {
                 self.files.push((name, bytes));
                 continue;
             };
-            if names.contains(&png) {
-                self.files.push((name, bytes));
-                continue;
+            let svg = String::from_utf8_lossy(&bytes);
+            let (png, kept) = (format!("{stem}.png"), names.contains(&format!("{stem}.png")));
+            if formats.contains(&Format::Png)
+                && !kept
+                && let Some(pixels) = self.take(pictures::png(&svg))
+            {
+                self.files.push((png, pixels));
             }
-            if formats.contains(&Format::Png) {
-                let pixels = pictures::png(&String::from_utf8_lossy(&bytes));
-                if let Some(pixels) = self.take(pixels) {
-                    self.files.push((png, pixels));
-                }
+            if formats.contains(&Format::Pdf)
+                && let Some(page) = self.take(pictures::pdf(&svg))
+            {
+                self.files.push((format!("{stem}.pdf"), page));
             }
-            if formats.contains(&Format::Svg) {
+            if formats.contains(&Format::Svg) || kept {
                 self.files.push((name, bytes));
             }
         }

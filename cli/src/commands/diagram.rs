@@ -10,7 +10,7 @@ use crate::terminal;
 use continuation::diagram::{DiagramBranch, Unfinished};
 use pictures::{REPORT, report};
 use std::path::Path;
-use study::case::ResolvedCase;
+use study::case::{PictureCase, ResolvedCase};
 use study::record::TraceResult;
 use study::record::{DiagramResult, diagram_json, diagram_summary};
 use study::run::{Keep, KeepNothing, Saved, run_diagram};
@@ -32,17 +32,20 @@ pub(super) fn diagram(arguments: &DiagramArguments, listen: &Listen<'_>) -> Exit
         Exit::BadInput
     };
     let orbits = [pictures::PERIOD, super::orbits::TABLES];
-    let names: Vec<&str> = [DIAGRAM, CASE, pictures::DIAGRAM, REPORT, TABLES]
-        .into_iter()
-        .chain(orbits)
-        .chain(pictures::ORBITS)
-        .chain(Checkpoint::NAMES)
-        .collect();
+    let names: Vec<&str> =
+        [DIAGRAM, CASE, pictures::DIAGRAM, pictures::PHYSICAL_DIAGRAM, REPORT, TABLES]
+            .into_iter()
+            .chain(orbits)
+            .chain(pictures::ORBITS)
+            .chain(Checkpoint::NAMES)
+            .collect();
     let folder = match arguments.output.folder(&case.name, &names, &arguments.case.inputs()) {
         Ok(folder) => folder,
         Err(exit) => return exit,
     };
-    let text = case.to_toml();
+    // another look of its pictures makes no other diagram
+    let plain = ResolvedCase { picture: PictureCase::default(), ..case.clone() };
+    let text = plain.to_toml();
     let checkpoint = folder.as_ref().map(|folder| Checkpoint::check(folder.path(), &text));
     let mut checkpoint = match checkpoint.transpose() {
         Ok(checkpoint) => checkpoint,
@@ -147,7 +150,7 @@ fn deliver(
                 |id: usize| if id == 0 { "first branch".into() } else { format!("branch {id}") };
             let curves: Vec<(String, &TraceResult)> =
                 result.branches.iter().map(|branch| (label(branch.id), &branch.trace)).collect();
-            made.attempt(REPORT, report(&result.case, &result.stopped_detail, &curves));
+            made.attempt(REPORT, report(case, &result.stopped_detail, &curves));
         }
     }
     let complete = result.followed;

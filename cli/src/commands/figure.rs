@@ -19,6 +19,10 @@ pub(super) fn figure(arguments: &FigureArguments, listen: &Listen<'_>) -> Exit {
         Ok(plan) => plan,
         Err(error) => return refuse(&error),
     };
+    let look = match super::look(&arguments.output) {
+        Ok(look) => look,
+        Err(exit) => return exit,
+    };
     let folder = match arguments.output.folder("figures", &[JSON, "index.html", "claims.json"], &[])
     {
         Ok(folder) => folder,
@@ -38,7 +42,8 @@ pub(super) fn figure(arguments: &FigureArguments, listen: &Listen<'_>) -> Exit {
     let mut made = Made::json(JSON, paper::json(&computed));
     if folder.is_some() {
         observer.say("drawing".to_owned());
-        made.files(paper::files(&computed, !arguments.output.no_pictures));
+        let look = Some(&look).filter(|_| !arguments.output.no_pictures);
+        made.files(paper::files(&computed, look));
     }
     observer.finish();
     let complete = computed.early.is_empty();

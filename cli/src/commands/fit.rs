@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use study::case::{Override, catalogue, load, plain_name};
+use study::case::{Override, PictureCase, catalogue, load, plain_name};
 use study::fit::files::{self as tables, FIT, FitsRow, TABLES, fit_json, fits_csv, summary};
 use study::fit::lab::{self, Lab, Wishes};
 use study::fit::plan::{PLAN, planned};
@@ -35,8 +35,12 @@ pub(super) fn fit(arguments: &FitArguments, listen: &Listen<'_>) -> Exit {
     if let Some(case) = &arguments.plan {
         return plan(arguments, case, &lab, wishes);
     }
+    let look = match super::look(&arguments.output) {
+        Ok(look) => look,
+        Err(exit) => return exit,
+    };
     let sources = sources(&arguments.curves, &lab);
-    let task = Task { arguments, lab: &lab, laws, wishes, profiles: &profiles };
+    let task = Task { arguments, lab: &lab, laws, wishes, profiles: &profiles, look: &look };
     match sources.as_slice() {
         [one] => single(&task, one, listen),
         several => batch(&task, several, listen),
@@ -50,6 +54,7 @@ struct Task<'a> {
     laws: Laws,
     wishes: Wishes<'a>,
     profiles: &'a Profiles,
+    look: &'a PictureCase,
 }
 
 impl Task<'_> {
@@ -121,9 +126,13 @@ fn inputs(arguments: &FitArguments) -> Vec<PathBuf> {
 }
 
 /// All files but the JSON.
-fn files(outcome: &Outcome, drawn: Drawn) -> Result<Vec<(String, Vec<u8>)>, String> {
+fn files(
+    outcome: &Outcome,
+    drawn: Drawn,
+    look: &PictureCase,
+) -> Result<Vec<(String, Vec<u8>)>, String> {
     let tables = tables::files(outcome).map_err(|error| error.to_string())?;
-    let pictures = draw_fit(outcome, drawn).map_err(|error| error.to_string())?;
+    let pictures = draw_fit(outcome, drawn, look).map_err(|error| error.to_string())?;
     Ok([tables, pictures].concat())
 }
 
@@ -163,9 +172,9 @@ fn single(task: &Task<'_>, source: &Source, listen: &Listen<'_>) -> Exit {
     };
     let mut made = Made::json(FIT, fit_json(&outcome));
     if folder.is_some() {
-        made.files(files(&outcome, drawn(arguments, Drawn::SvgAndPng)));
+        made.files(files(&outcome, drawn(arguments, Drawn::SvgAndPng), task.look));
         if arguments.report {
-            made.attempt(REPORT, Ok::<_, String>(fit_report(&outcome)));
+            made.attempt(REPORT, Ok::<_, String>(fit_report(&outcome, task.look)));
         }
     }
     let complete = outcome.best.report.is_good();
@@ -227,12 +236,16 @@ fn batch(task: &Task<'_>, sources: &[Source], listen: &Listen<'_>) -> Exit {
                 rows.push(FitsRow::of(report, &name));
                 listed.push(json!({ "curve": curve, "folder": name, "good": report.is_good() }));
                 let json = fit_json(outcome).map(|text| (FIT.to_owned(), text.into_bytes()));
-                let own = files(outcome, drawn(arguments, Drawn::Svg)).map(|mut files| {
-                    if arguments.report {
-                        files.push((REPORT.to_owned(), fit_report(outcome).into_bytes()));
-                    }
-                    files
-                });
+                let own =
+                    files(outcome, drawn(arguments, Drawn::Svg), task.look).map(|mut files| {
+                        if arguments.report {
+                            files.push((
+                                REPORT.to_owned(),
+                                fit_report(outcome, task.look).into_bytes(),
+                            ));
+                        }
+                        files
+                    });
                 match (json, own) {
                     (Ok(json), Ok(own)) => contents.extend(
                         std::iter::once(json)

@@ -18,12 +18,20 @@ const CASE: &str = "case.toml";
 
 /// Map a case.
 pub(super) fn map(arguments: &MapArguments, listen: &Listen<'_>) -> Exit {
-    let case =
-        match super::loaded(&arguments.case, &arguments.case.overrides(), arguments.output.quiet) {
-            Ok(loaded) => loaded.case,
-            Err(exit) => return exit,
-        };
-    let names = [MAP, CASE, pictures::MAP, "fold-*.csv", "hopf-*.csv", "branch-point-*.csv"];
+    let overrides = arguments.case.with_looks(&arguments.output);
+    let case = match super::loaded(&arguments.case, &overrides, arguments.output.quiet) {
+        Ok(loaded) => loaded.case,
+        Err(exit) => return exit,
+    };
+    let names = [
+        MAP,
+        CASE,
+        pictures::MAP,
+        pictures::PHYSICAL_MAP,
+        "fold-*.csv",
+        "hopf-*.csv",
+        "branch-point-*.csv",
+    ];
     let folder = match arguments.output.folder(&case.name, &names, &arguments.case.inputs()) {
         Ok(folder) => folder,
         Err(exit) => return exit,
@@ -54,7 +62,7 @@ fn deliver(
             made.attempt(curve.csv.clone(), branch_csv(&curve.table));
         }
         if !arguments.output.no_pictures && !result.curves.is_empty() {
-            made.attempt(pictures::MAP, pictures::draw_map(case, result));
+            made.files(pictures::draw_map(case, result));
         }
     }
     let complete = result.stopped_because.is_complete();

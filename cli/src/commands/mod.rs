@@ -17,11 +17,11 @@ mod trace;
 
 use crate::Listen;
 use crate::advice::Advised;
-use crate::arguments::{Arguments, CaseArguments, Command};
+use crate::arguments::{Arguments, CaseArguments, Command, OutputArguments};
 use crate::exit::Exit;
 use crate::terminal;
 use std::path::PathBuf;
-use study::case::{LoadedCase, Override, catalogue, load};
+use study::case::{LoadedCase, Override, PictureCase, catalogue, load, picture_of};
 
 /// Do what was asked.
 pub(crate) fn dispatch(arguments: &Arguments, listen: &Listen<'_>) -> Exit {
@@ -59,6 +59,15 @@ fn loaded(
         }
     }
     Ok(loaded)
+}
+
+/// How pictures look that belong to no single case, or the exit code after saying what is wrong with it.
+fn look(output: &OutputArguments) -> Result<PictureCase, Exit> {
+    let looks: Vec<Override> = output.looks().collect();
+    picture_of(&looks).map_err(|error| {
+        terminal::error(&error.advised());
+        Exit::BadInput
+    })
 }
 
 /// Say which of the files that were kept are no longer what was written.

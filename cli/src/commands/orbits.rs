@@ -9,7 +9,7 @@ use crate::exit::Exit;
 use crate::terminal;
 use std::path::Path;
 use study::case::ResolvedCase;
-use study::record::{DiagramResult, branch_csv, diagram_json, diagram_summary};
+use study::record::{DiagramResult, Laboratory, Table, branch_csv, diagram_json, diagram_summary};
 use study::run::run_orbits;
 
 const ORBITS: &str = "orbits.json";
@@ -61,8 +61,14 @@ pub(super) fn add_files(
     result: &DiagramResult,
     with_pictures: bool,
 ) {
+    let tables: Vec<&Table> = result.branches.iter().map(|branch| &branch.trace.table).collect();
+    let laboratory = Laboratory::of(case, &tables);
     for branch in &result.branches {
         made.attempt(branch.csv(), branch_csv(&branch.trace.table));
+        if let Some(laboratory) = &laboratory {
+            let name = branch.csv().replace(".csv", "-physical.csv");
+            made.attempt(name, branch_csv(&laboratory.table(case, &branch.trace.table)));
+        }
         if let Some(orbits) = &branch.orbits {
             let table = orbits.table(&result.parameter);
             made.attempt(branch.orbit_csv(), branch_csv(&table));
@@ -70,6 +76,7 @@ pub(super) fn add_files(
     }
     if with_pictures && result.has_curves() {
         made.attempt(pictures::DIAGRAM, pictures::draw_diagram(case, result));
+        made.files(pictures::draw_physical_diagram(case, result));
         made.files(pictures::draw_orbits(case, result));
     }
 }

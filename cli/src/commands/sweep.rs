@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
-use study::case::catalogue;
+use study::case::{LoadError, Override, PictureCase, catalogue, load_text};
 use study::record::{CaseRecord, Status, SweepResult, sweep_json, sweep_summary};
 use study::run::{Outcome, run_sweep};
 use study::store::{Folder, Kept, Store, StoreError, of_one_sweep};
@@ -36,6 +36,10 @@ pub(super) fn sweep(arguments: &SweepArguments, listen: &Listen<'_>) -> Exit {
     let folder = match arguments.output.folder(&place, &NAMES, &sweep.inputs) {
         Ok(folder) => folder,
         Err(exit) => return exit,
+    };
+    let look = match look(&sweep.plan, &arguments.output) {
+        Ok(look) => look,
+        Err(error) => return refuse(&error),
     };
     let store = folder.as_ref().map(|folder| Store::check(folder.path(), &sweep.plan)).transpose();
     let store = match store {
@@ -72,7 +76,8 @@ pub(super) fn sweep(arguments: &SweepArguments, listen: &Listen<'_>) -> Exit {
     let asked = sweep.cases.len();
     let result = SweepResult::new(&sweep.plan, asked, records(&run.kept), run.interrupted);
     let output = &arguments.output;
-    let exit = deliver(output, folder.as_ref(), &sweep.plan, &run.kept, &result, &sweep.inputs);
+    let exit =
+        deliver(output, folder.as_ref(), (&sweep.plan, &look), &run.kept, &result, &sweep.inputs);
     if run.failure.is_some() { Exit::NotWritten } else { exit }
 }
 
@@ -88,6 +93,10 @@ pub(super) fn merge(arguments: &MergeArguments) -> Exit {
     }
     let Some((_, first)) = stores.first() else { return Exit::BadInput };
     let plan = Plan { shard: Shard::ALL, ..first.plan().clone() };
+    let look = match look(&plan, &arguments.output) {
+        Ok(look) => look,
+        Err(error) => return refuse(&error),
+    };
     let folder = match arguments.output.folder(&plan.name, &NAMES, &[]) {
         Ok(folder) => folder,
         Err(exit) => return exit,
@@ -111,7 +120,14 @@ pub(super) fn merge(arguments: &MergeArguments) -> Exit {
     kept.sort_by_key(|case| case.record.case);
     kept.dedup_by_key(|case| case.record.case);
     let result = SweepResult::new(&plan, plan.count().unwrap_or(0), records(&kept), false);
-    deliver(&arguments.output, folder.as_ref(), &plan, &kept, &result, &[])
+    deliver(&arguments.output, folder.as_ref(), (&plan, &look), &kept, &result, &[])
+}
+
+/// How the phase diagram looks: as the sweep file says, and the options after it.
+fn look(plan: &Plan, output: &OutputArguments) -> Result<PictureCase, LoadError> {
+    let looks: Vec<Override> = output.looks().collect();
+    let text = plan.base.join("\n");
+    load_text(&plan.name, &plan.name, &text, &looks, &catalogue()).map(|loaded| loaded.case.picture)
 }
 
 fn records(kept: &[Kept]) -> Vec<CaseRecord> {
@@ -210,7 +226,7 @@ fn bar(quiet: bool, cases: usize, done: usize) -> Option<ProgressBar> {
 fn deliver(
     output: &OutputArguments,
     folder: Option<&Folder>,
-    plan: &Plan,
+    (plan, look): (&Plan, &PictureCase),
     kept: &[Kept],
     result: &SweepResult,
     inputs: &[PathBuf],
@@ -230,7 +246,7 @@ fn deliver(
         if phases && plan.plane().is_some() {
             made.attempt(PHASE, phase_csv(plan, kept));
             if !output.no_pictures {
-                made.attempt(pictures::PHASE, pictures::draw_phase(result));
+                made.attempt(pictures::PHASE, pictures::draw_phase(result, look));
             }
         }
     }

@@ -22,11 +22,11 @@ const CASE: &str = "case.toml";
 
 /// Trace a case.
 pub(super) fn trace(arguments: &TraceArguments, listen: &Listen<'_>) -> Exit {
-    let case =
-        match super::loaded(&arguments.case, &arguments.case.overrides(), arguments.output.quiet) {
-            Ok(loaded) => loaded.case,
-            Err(exit) => return exit,
-        };
+    let overrides = arguments.case.with_looks(&arguments.output);
+    let case = match super::loaded(&arguments.case, &overrides, arguments.output.quiet) {
+        Ok(loaded) => loaded.case,
+        Err(exit) => return exit,
+    };
     let folder = match folder(arguments, &case.name) {
         Ok(folder) => folder,
         Err(exit) => return exit,
@@ -40,10 +40,7 @@ pub(super) fn trace(arguments: &TraceArguments, listen: &Listen<'_>) -> Exit {
             terminal::error(&error.advised());
             Exit::BadInput
         }
-        Ok(mut result) => {
-            result.pictures.title = pictures::titled(&result.pictures.title, &case);
-            deliver(arguments, &case, &result, folder.as_ref())
-        }
+        Ok(result) => deliver(arguments, &case, &result, folder.as_ref()),
     }
 }
 
@@ -53,6 +50,7 @@ fn folder(arguments: &TraceArguments, case: &str) -> Result<Option<Folder>, Exit
         .into_iter()
         .chain(pictures::NAMES)
         .chain(pictures::PHYSICAL)
+        .chain(pictures::COLUMNS)
         .collect();
     arguments.output.folder(case, &names, &arguments.case.inputs())
 }
@@ -76,11 +74,12 @@ fn deliver(
         }
         if arguments.report {
             let curves = [("branch".to_owned(), result)];
-            made.attempt(REPORT, report(&result.case, &result.stopped_detail, &curves));
+            made.attempt(REPORT, report(case, &result.stopped_detail, &curves));
         }
         if !arguments.output.no_pictures {
-            made.files(pictures::draw_all(&result.pictures));
+            made.files(pictures::draw_all(case, &result.pictures));
             made.files(pictures::draw_physical(case, result));
+            made.files(pictures::draw_columns(case, result));
         }
     }
     let complete = result.stopped_because.is_complete();
@@ -88,7 +87,7 @@ fn deliver(
         folder,
         made,
         &arguments.case.inputs(),
-        |written| summary(result, written),
+        |written| summary(case, result, written),
         complete,
     )
 }
@@ -153,19 +152,24 @@ mod tests {
     fn pictures_have_the_formats_that_are_wanted() {
         let place = tempfile::tempdir().unwrap();
         let result = example();
-        for (format, endings) in
-            [("svg", [true, false]), ("png", [false, true]), ("svg,png", [true; 2])]
-        {
+        for (format, endings) in [
+            ("svg", [true, false, false]),
+            ("png", [false, true, false]),
+            ("svg,png,pdf", [true; 3]),
+        ] {
             let out = place.path().join(format);
             assert_eq!(deliver_to(&out, &["--format", format], &result), Exit::Done);
             let names = names(&out);
-            let there = ["shapes.svg", "shapes.png"].map(|name| names.contains(&name.to_owned()));
+            let there = ["shapes.svg", "shapes.png", "shapes.pdf"]
+                .map(|name| names.contains(&name.to_owned()));
             assert_eq!(there, endings, "{names:?}");
         }
         let png = fs::read(place.path().join("png/shapes.png")).unwrap();
         assert_eq!(&png[1..4], b"PNG");
+        let pdf = fs::read(place.path().join("svg,png,pdf/shapes.pdf")).unwrap();
+        assert_eq!(&pdf[..5], b"%PDF-");
         assert!(
-            Arguments::try_parse_from(["arclen", "trace", "fig12", "--format", "pdf"]).is_err()
+            Arguments::try_parse_from(["arclen", "trace", "fig12", "--format", "eps"]).is_err()
         );
     }
 

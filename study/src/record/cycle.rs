@@ -5,10 +5,11 @@ use super::column::PLATES;
 use super::events::maxwell_of;
 use super::number::rounded;
 use super::outline::State;
+use super::physical::{Laboratory, spoken};
 use super::result::{Cell, MaxwellRecord, Table};
 use super::summary::{aligned, count};
 use super::view::CyclePictures;
-use crate::case::DeviceCase;
+use crate::case::{DeviceCase, ResolvedCase};
 use continuation::StopReason;
 use serde::Serialize;
 use serde_json::json;
@@ -377,8 +378,47 @@ pub fn cycle_table(result: &CycleResult) -> Table {
     table
 }
 
+/// The jumps in physical units, and the most attractive force; empty for a case that is dimensionless.
+fn physically(case: &ResolvedCase, result: &CycleResult) -> String {
+    let Some(laboratory) = Laboratory::of(case, &[&result.branch]) else { return String::new() };
+    let unit = |unit: &str| laboratory.convert(unit).unwrap_or(("", 1.0));
+    let (length, force, energy) = (unit("R0"), unit("sqrt(chi k_b)"), unit("chi R0^2"));
+    let number = |value: Option<f64>, factor: f64| {
+        value.map_or_else(|| "–".to_string(), |value| rounded(factor * value))
+    };
+    let mut out = String::new();
+    if !result.jumps.is_empty() {
+        let named = |name: &str, unit: &str| format!("{name} [{}]", spoken(unit));
+        let mut rows = vec![vec![
+            "in physical units".to_owned(),
+            named("z0 before", length.0),
+            named("z0 after", length.0),
+            named("force before", force.0),
+            named("force after", force.0),
+            named("dissipated", energy.0),
+        ]];
+        rows.extend(result.jumps.iter().map(|jump| {
+            vec![
+                jump.direction.to_owned(),
+                number(jump.z0_before, length.1),
+                number(jump.z0_after, length.1),
+                number(jump.force_before, force.1),
+                number(jump.force_after, force.1),
+                number(jump.dissipated, energy.1),
+            ]
+        }));
+        out.push_str(&aligned(&rows));
+    }
+    if let Some((z0, pull)) = result.pull_off {
+        let (a, b) = (number(Some(pull), force.1), number(Some(z0), length.1));
+        let (f, l) = (spoken(force.0), spoken(length.0));
+        let _ = writeln!(out, "pull-off in physical units: force {a} {f} at z0 = {b} {l}");
+    }
+    out
+}
+
 /// The summary; `folder` is where the files went, if they went anywhere.
-pub fn cycle_summary(result: &CycleResult, folder: Option<&Path>) -> String {
+pub fn cycle_summary(case: &ResolvedCase, result: &CycleResult, folder: Option<&Path>) -> String {
     let mut out = String::new();
     let name = result.parameter;
     let number = |value: Option<f64>| value.map_or_else(|| "–".to_string(), rounded);
@@ -400,6 +440,10 @@ pub fn cycle_summary(result: &CycleResult, folder: Option<&Path>) -> String {
             ]);
         }
         out.push_str(&aligned(&rows));
+    }
+    let physical = physically(case, result);
+    if !physical.is_empty() {
+        let _ = write!(out, "\n{physical}");
     }
     out.push('\n');
     if let Some((z0, force)) = result.pull_off {

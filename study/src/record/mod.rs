@@ -28,7 +28,7 @@ pub use events::events_json;
 pub use map::{MapCurve, MapPoint, MapResult, map_json, map_summary};
 pub use orbits::{CycleRecord, CyclesRecord, OrbitRecord, OrbitsRecord};
 pub use outline::{Outline, State};
-pub use physical::{PhysicalUnits, Scales, Unit, physical_table};
+pub use physical::{Laboratory, PhysicalUnits, Scales, Unit, physical_table, spoken};
 pub use result::{Cell, ContactRow, EventRecord, FormRecord, MaxwellRecord, Table};
 pub use result::{ModeRecord, Pictures, ResolutionRecord, ShapeRecord};
 pub use result::{StabilityRecord, TraceResult};
