@@ -126,7 +126,9 @@ impl Axis {
 
     /// A part of it, in the units of its labels.
     pub(super) fn part(&self, (low, high): (f64, f64), count: usize) -> Self {
-        let mut part = Axis { low, high, ..self.clone() }.ticked(count);
+        let part = Axis { low, high, ..self.clone() };
+        let ticked = part.clone().ticked(count);
+        let mut part = if ticked.ticks.len() < 2 { part.ticked(2 * count) } else { ticked };
         if part.logarithmic && part.ticks.len() < 2 {
             part.ticks = vec![low + 0.2 * (high - low), high - 0.2 * (high - low)];
         }
@@ -191,11 +193,11 @@ fn power_label(place: f64) -> String {
     let digit = 10_f64.powf(place - f64::from(exponent));
     let round = (digit - 1.0).abs() < 1e-6;
     match (round, exponent) {
-        (true, _) => format!("10{}", superscript(exponent)),
-        (false, -2..=3) => {
+        (_, -1..=2) | (false, -2..=3) => {
             let text = format!("{:.4}", digit * 10_f64.powi(exponent));
             text.trim_end_matches('0').trim_end_matches('.').to_owned()
         }
+        (true, _) => format!("10{}", superscript(exponent)),
         _ => {
             let digits = format!("{digit:.1}");
             format!("{}·10{}", digits.trim_end_matches(".0"), superscript(exponent))
@@ -263,7 +265,7 @@ mod tests {
         };
         assert_eq!(
             labels(1e-6, 1e2),
-            ["10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰", "10¹", "10²"]
+            ["10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "0.1", "1", "10", "100"]
         );
         assert_eq!(labels(3e-4, 6e-3), ["5·10⁻⁴", "10⁻³", "2·10⁻³", "5·10⁻³"]);
         assert_eq!(labels(0.2, 0.4), ["0.2", "0.3", "0.4"]);

@@ -142,6 +142,8 @@ pub(super) struct Chart {
     pub(super) regions: Vec<(Vec<(f64, f64)>, Color)>,
     /// Lines, the first at the bottom.
     pub(super) lines: Vec<Line>,
+    /// Heads of arrows: where each comes from, where it points to.
+    pub(super) arrows: Vec<((f64, f64), (f64, f64), Color)>,
     /// Special points, on top.
     pub(super) marks: Vec<Mark>,
     /// The legend, from the top.
@@ -200,6 +202,7 @@ impl Chart {
             tiles: Vec::new(),
             regions: Vec::new(),
             lines: Vec::new(),
+            arrows: Vec::new(),
             marks: Vec::new(),
             legend: Vec::new(),
             size,
@@ -242,6 +245,9 @@ impl Chart {
             .collect();
         for (points, _) in &mut self.regions {
             points.iter_mut().for_each(|point| *point = moved(*point));
+        }
+        for (from, to, _) in &mut self.arrows {
+            (*from, *to) = (moved(*from), moved(*to));
         }
         for tile in &mut self.tiles {
             (tile.from, tile.to) = (moved(tile.from), moved(tile.to));

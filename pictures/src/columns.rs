@@ -43,7 +43,23 @@ pub(super) fn title(case: &ResolvedCase, table: &Table, column: &str) -> String 
 pub(super) fn named(case: &ResolvedCase, name: &str) -> String {
     let entry = catalogue().into_iter().find(|entry| entry.name == case.problem.name());
     let words = entry.and_then(|entry| entry.axes.into_iter().find(|(own, _)| own == name));
-    words.map_or_else(|| shown(name), |(_, words)| words)
+    words
+        .map_or_else(|| letter(name).map_or_else(|| shown(name), str::to_owned), |(_, words)| words)
+}
+
+/// The Greek letter that a name spells.
+fn letter(name: &str) -> Option<&'static str> {
+    const LETTERS: [(&str, &str); 8] = [
+        ("alpha", "α"),
+        ("beta", "β"),
+        ("gamma", "γ"),
+        ("lambda", "λ"),
+        ("mu", "μ"),
+        ("nu", "ν"),
+        ("rho", "ρ"),
+        ("sigma", "σ"),
+    ];
+    LETTERS.into_iter().find(|(own, _)| *own == name).map(|(_, letter)| letter)
 }
 
 /// One column over another, with the special points; of losses of symmetry there are too many.

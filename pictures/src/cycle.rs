@@ -6,7 +6,7 @@ use super::columns::within;
 use super::detail::{Sought, Window, distance};
 use super::draw::{DISTANCE, FORCE, WIDE, curve_lines, shapes, unstable_entries, values};
 use super::heading::{fit, titled};
-use super::palette::{Color, FAINT, of_state};
+use super::palette::{FAINT, of_state};
 use super::physical::scaled;
 use study::case::ResolvedCase;
 use study::record::view::{Curve, CyclePictures, Shape, drawable};
@@ -17,11 +17,6 @@ pub const LOOP: &str = "loop.svg";
 
 /// Plate distance and force.
 type Place = (f64, f64);
-
-/// Length of an arrow's head, as part of the picture's height.
-const HEAD: f64 = 0.03;
-/// Half its width.
-const HALF: f64 = 0.011;
 
 /// Name of the same in physical units.
 pub const PHYSICAL_LOOP: &str = "loop-physical.svg";
@@ -97,7 +92,7 @@ fn pole(pair: &[Shape]) -> Sought {
     // with the plates, where they are near
     let plates = pair.iter().map(|shape| shape.plate).filter(|plate| *plate < high + 0.3);
     let high = plates.fold(high, f64::max);
-    let room = 0.1 * (high - low).max(wide);
+    let room = 0.05 * (high - low).max(wide);
     Sought::Windows(vec![Window { x: (-wide - room, wide + room), y: (low - room, high + room) }])
 }
 
@@ -119,35 +114,20 @@ fn hysteresis(cycle: &CyclePictures, title: &str, axes: [&str; 2]) -> Chart {
     lines.extend(unstable);
     let size = (f64::from(WIDE.0), f64::from(WIDE.1));
     let scale = (size.0 / (x.high - x.low), size.1 / (y.high - y.low));
-    let mut arrow = |from: Place, to: Place, color: Color, shaft: bool| {
-        let (a, b) = ((from.0 / units.0, from.1 / units.1), (to.0 / units.0, to.1 / units.1));
-        if ![a.0, a.1, b.0, b.1].into_iter().all(drawable) {
-            return;
-        }
-        // in pixels, so that heads are as wide everywhere
-        let along = ((b.0 - a.0) * scale.0, (b.1 - a.1) * scale.1);
-        let length = along.0.hypot(along.1);
-        if length == 0.0 {
-            return;
-        }
-        let along = (along.0 / length, along.1 / length);
-        let corner = |back: f64, side: f64| {
-            let (dx, dy) = (along.0 * back - along.1 * side, along.1 * back + along.0 * side);
-            (b.0 - size.1 * dx / scale.0, b.1 - size.1 * dy / scale.1)
-        };
-        if shaft {
-            lines.push(Line { points: vec![a, b], color, width: 2, stroke: Stroke::Solid });
-        }
-        let points = vec![corner(HEAD, HALF), b, corner(HEAD, -HALF)];
-        lines.push(Line { points, color, width: 2, stroke: Stroke::Solid });
-    };
+    let mut arrows = Vec::new();
+    let in_axes = |(a, b): Place| (a / units.0, b / units.1);
+    let good = |(a, b): Place| drawable(a) && drawable(b);
     for (curve, color) in [(&cycle.retract, way_out), (&cycle.approach, way_in)] {
         if let Some((from, to)) = far_along(curve, scale, units) {
-            arrow(from, to, color, false);
+            arrows.push((in_axes(from), in_axes(to), color));
         }
     }
     for (from, to) in &cycle.jumps {
-        arrow(*from, *to, leap, true);
+        let (a, b) = (in_axes(*from), in_axes(*to));
+        if good(a) && good(b) {
+            lines.push(Line { points: vec![a, b], color: leap, width: 2, stroke: Stroke::Solid });
+            arrows.push((a, b, leap));
+        }
     }
     let solid = |color, label: &str| {
         let (stroke, label) = (Stroke::Solid, label.to_owned());
@@ -163,7 +143,7 @@ fn hysteresis(cycle: &CyclePictures, title: &str, axes: [&str; 2]) -> Chart {
     if !marks.is_empty() {
         legend.push(Entry::Marker { kind: "fold".to_owned() });
     }
-    let chart = Chart { lines, marks, legend, ..Chart::new(fit(title), x, y, WIDE) };
+    let chart = Chart { lines, arrows, marks, legend, ..Chart::new(fit(title), x, y, WIDE) };
     let details = short_jumps(cycle, scale, units);
     Chart { details, ..chart }
 }

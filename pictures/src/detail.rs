@@ -45,6 +45,12 @@ const LONG: f64 = 25.0;
 const LARGEST: f64 = 2000.0;
 /// Size of a detail's frame with the usual letters, and the narrowest one.
 const SIZE: (f64, f64) = (190.0, 150.0);
+/// Size of one with true proportions.
+const LARGE: (f64, f64) = (330.0, 240.0);
+/// Windows that fill so much of the window around both are shown as one.
+const TOGETHER: f64 = 0.15;
+/// A pull-off so near to zero force, in pixels, is not seen.
+const FLAT: f64 = 15.0;
 
 /// A detail: its part of the chart, and where it is drawn.
 #[derive(Debug)]
@@ -79,10 +85,13 @@ impl Detail {
         let below = drawing.scaled(LETTERS[3]) + 10.0;
         let mut out = Vec::new();
         for (window, name) in windows.into_iter().zip(names) {
-            let size = (SIZE.0.max(width - drawing.scaled(70.0)).min(1.3 * SIZE.0), SIZE.1);
+            let size = match chart.proportional {
+                true => LARGE,
+                false => (SIZE.0.max(width - drawing.scaled(70.0)).min(1.3 * SIZE.0), SIZE.1),
+            };
             let window =
                 if chart.proportional { proportional(window, size, frame) } else { window };
-            let x = chart.x.part(window.x, 3);
+            let x = chart.x.part(window.x, 4);
             let y = chart.y.part(window.y, 4);
             let letters = drawing.scaled(LETTERS[3]);
             let labels = y.ticks.iter().map(|tick| text::width(&y.label(*tick), letters));
@@ -174,6 +183,7 @@ impl Detail {
             let places: Vec<Place> = line.points.iter().map(|point| frame.place(*point)).collect();
             draw_line(svg, line, &places, drawing.look.line);
         }
+        drawing.arrows(svg, frame);
         svg.push_str("</g>\n");
         let _ = writeln!(
             svg,
@@ -259,9 +269,45 @@ fn hidden(chart: &Chart, frame: Frame) -> Vec<Window> {
         .filter(|(_, place)| frame.holds(*place))
         .collect();
     if let Some(window) = covered(&marks, frame) {
-        found.push(window);
+        // what is nearly the same is shown once
+        match found.pop() {
+            Some(own) => match together(own, window) {
+                Some(both) => found.push(both),
+                None => found.extend([own, window]),
+            },
+            None => found.push(window),
+        }
     }
+    found.extend(pull_off(chart, frame, &marks));
     found
+}
+
+/// A window around two that are of about the same size and place.
+fn together(a: Window, b: Window) -> Option<Window> {
+    let around = |p: (f64, f64), q: (f64, f64)| {
+        let both = (p.0.min(q.0), p.1.max(q.1));
+        let most = (p.1 - p.0).max(q.1 - q.0);
+        (both.1 - both.0 < (1.0 + TOGETHER) * most + 0.5 * (p.1 - p.0).min(q.1 - q.0))
+            .then_some(both)
+    };
+    Some(Window { x: around(a.x, b.x)?, y: around(a.y, b.y)? })
+}
+
+/// The attraction, where it is small beside what presses.
+fn pull_off(chart: &Chart, frame: Frame, marks: &[(&str, Place)]) -> Option<Window> {
+    let (_, pull) = marks.iter().find(|(kind, _)| *kind == "pull-off")?;
+    let (_, zero) = marks.iter().find(|(kind, _)| *kind == "zero-force")?;
+    let depth = pull.1 - frame.place((chart.x.low, 0.0)).1;
+    let apart = pull.0 - zero.0;
+    if !(chart.y.has_zero() && depth > SAME && depth < FLAT && apart.abs() > 1.0) {
+        return None;
+    }
+    let (near, far) = (zero.0 - apart, pull.0 + 4.0 * apart);
+    let (left, right) = (near.min(far).max(frame.left), near.max(far).min(frame.right));
+    let zero = pull.1 - depth;
+    let (from, to) =
+        (frame.point((left, zero + 1.4 * depth)), frame.point((right, zero - 1.4 * depth)));
+    Some(Window { x: (from.0, to.0), y: (from.1, to.1) })
 }
 
 /// Special points of which one covers the other, the fold or branch point with the nearest neighbour first.

@@ -18,6 +18,8 @@ const TOP: f64 = 18.0;
 const TITLE: f64 = 30.0;
 const SUBTITLE: f64 = 20.0;
 const ROW: f64 = 24.0;
+/// Length of an arrow's head, and half its width.
+const HEAD: (f64, f64) = (13.0, 5.0);
 /// Sizes of letters: title, axes, ticks and legend, names of special points.
 pub(super) const LETTERS: [f64; 4] = [18.0, 16.0, 14.0, 13.0];
 
@@ -78,6 +80,7 @@ impl Drawing<'_> {
             let places: Vec<Place> = line.points.iter().map(|point| frame.place(*point)).collect();
             draw_line(&mut svg, line, &places, self.look.line);
         }
+        self.arrows(&mut svg, frame);
         svg.push_str("</g>\n");
         for detail in &details {
             detail.mark(&mut svg);
@@ -89,6 +92,28 @@ impl Drawing<'_> {
         }
         svg.push_str("</svg>\n");
         svg
+    }
+
+    /// Heads of arrows, as large in every frame.
+    pub(super) fn arrows(&self, svg: &mut String, frame: Frame) {
+        for (from, to, color) in &self.chart.arrows {
+            let ((ax, ay), (bx, by)) = (frame.place(*from), frame.place(*to));
+            let length = (bx - ax).hypot(by - ay);
+            if !(length > 0.0 && drawable(length) && frame.holds((bx, by))) {
+                continue;
+            }
+            let (dx, dy) = ((bx - ax) / length, (by - ay) / length);
+            let (back, side) = (self.scaled(HEAD.0), self.scaled(HEAD.1));
+            let corner =
+                |way: f64| (bx - back * dx - way * side * dy, by - back * dy + way * side * dx);
+            let d = path::straight(&[corner(1.0), (bx, by), corner(-1.0)]);
+            let width = 2.0 * self.look.line;
+            let _ = writeln!(
+                svg,
+                "<path d=\"{d}\" stroke=\"{}\" stroke-width=\"{width}\"/>",
+                hex(*color)
+            );
+        }
     }
 
     /// The entries of the legend that are shown.

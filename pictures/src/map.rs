@@ -31,7 +31,7 @@ pub fn draw_map(
         other => named(case, other),
     };
     let x = match result.key.as_str() {
-        key if !matches!(result.parameter.as_str(), "z0" | "alpha") => key,
+        key if !matches!(result.parameter.as_str(), "z0" | "alpha") => &named(case, key),
         "adhesion" => "adhesion w₀/χ",
         "bending" => "bending stiffness k_{b}/(χR₀²)",
         "pressure" => "ambient pressure P_{A}R₀/χ",

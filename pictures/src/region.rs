@@ -9,7 +9,7 @@ type Point = (f64, f64);
 
 /// Lines of one second parameter that are looked at.
 const LINES: usize = 400;
-/// Regions that are narrower than so many lines are gaps between curves.
+/// What is open on fewer lines is a gap between curves.
 const FEWEST: usize = 4;
 /// Most curves of which all hands are tried.
 const CURVES: usize = 8;
@@ -36,16 +36,22 @@ pub(super) fn several(
     let lines: Vec<Vec<Crossing>> =
         (0..LINES).map(|k| crossings(curves, place(k), start > end)).collect();
     let Some(hands) = hands(curves.len(), &lines) else { return Vec::new() };
+    let mut found: Vec<Vec<(f64, f64)>> =
+        lines.iter().map(|line| intervals(line, &hands, end)).collect();
+    close_gaps(&mut found, end);
+    let half = 0.5 * (high - low) / LINES as f64;
     let mut open: Vec<(Vec<Point>, Vec<Point>)> = Vec::new();
     let mut done = Vec::new();
     let mut kinds: Vec<bool> = Vec::new();
-    for (k, line) in lines.iter().enumerate() {
-        let found = intervals(line, &hands, end);
+    for (k, found) in found.into_iter().enumerate() {
         // an interval goes on where the line before had as many of the same kind
         let here: Vec<bool> = found.iter().map(|(_, to)| *to == end).collect();
         if here != kinds {
             done.append(&mut open);
-            open = found.iter().map(|_| (Vec::new(), Vec::new())).collect();
+            let begin = |(from, to): &(f64, f64)| {
+                (vec![(place(k) - half, *from)], vec![(place(k) - half, *to)])
+            };
+            open = found.iter().map(begin).collect();
             kinds = here;
         }
         for ((from, to), sides) in found.into_iter().zip(&mut open) {
@@ -55,9 +61,30 @@ pub(super) fn several(
     }
     done.append(&mut open);
     done.into_iter()
-        .filter(|(one, _)| one.len() >= FEWEST)
-        .map(|(one, other)| one.into_iter().chain(other.into_iter().rev()).collect())
+        .map(|(mut one, mut other)| {
+            for side in [&mut one, &mut other] {
+                if let Some((x, y)) = side.last().copied() {
+                    side.push((x + half, y));
+                }
+            }
+            one.into_iter().chain(other.into_iter().rev()).collect()
+        })
         .collect()
+}
+
+/// Takes away what is open to the end on a few lines only: they pass between the ends of two curves.
+fn close_gaps(lines: &mut [Vec<(f64, f64)>], end: f64) {
+    let is_open = |line: &Vec<(f64, f64)>| line.iter().any(|(_, to)| *to == end);
+    let mut from = 0;
+    while from < lines.len() {
+        let to = (from..lines.len()).find(|k| !is_open(&lines[*k])).unwrap_or(lines.len());
+        if to - from < FEWEST {
+            for line in &mut lines[from..to] {
+                line.retain(|(_, to)| *to != end);
+            }
+        }
+        from = to.max(from + 1);
+    }
 }
 
 /// Where the line of one second parameter crosses the curves, from the start of the path on.
