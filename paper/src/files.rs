@@ -94,9 +94,9 @@ pub fn files(
             files.push((format!("{}.png", stem(number)), png));
         }
         // the page has the titles itself
-        let untitled: Vec<String> =
-            computed.figures.iter().map(|f| f.sheet.untitled(look)).collect();
-        files.push(("index.html".to_owned(), page(computed, &untitled).into_bytes()));
+        let panels: Vec<Vec<String>> =
+            computed.figures.iter().map(|figure| figure.sheet.parts(look)).collect();
+        files.push(("index.html".to_owned(), page(computed, &panels).into_bytes()));
     }
     Ok(files)
 }

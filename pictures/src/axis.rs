@@ -135,6 +135,13 @@ impl Axis {
         part
     }
 
+    /// Whether both show the same range.
+    pub(super) fn is_like(&self, other: &Axis) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * a.abs().max(b.abs());
+        near(self.value(self.low), other.value(other.low))
+            && near(self.value(self.high), other.value(other.high))
+    }
+
     /// Where a number is, in the units of the labels; not drawable where a logarithm has no place for it.
     pub(super) fn place(&self, value: f64) -> f64 {
         match self.logarithmic {

@@ -7,7 +7,7 @@ use super::label;
 use super::look::Look;
 use super::palette::Color;
 use super::path::Place;
-use study::case::{AxisCase, AxisScale, PictureCase};
+use study::case::{AxisCase, AxisScale, PictureCase, shown};
 use study::record::view::{Mark, Stability, drawable};
 
 /// Why a picture could not be drawn.
@@ -225,7 +225,20 @@ impl Chart {
         };
         let (lowest, leftmost) = (least(&self.y, &|p| p.1), least(&self.x, &|p| p.0));
         let new_x = self.x.bounded((x.from, x.to), logarithmic(x), leftmost);
-        let new_y = self.y.bounded((y.from, y.to), logarithmic(y), lowest);
+        let inside = |a: f64| (new_x.low..=new_x.high).contains(&new_x.place(self.x.value(a)));
+        // a part of the horizontal axis is shown as high as what is in it
+        let (from, to) = match (x.from.or(x.to), y.from, y.to) {
+            (Some(_), None, None) => {
+                let points = self.lines.iter().filter(|line| line.width > 1);
+                let points = points.flat_map(|line| &line.points).filter(|point| inside(point.0));
+                let heights: Vec<f64> = points.map(|point| self.y.value(point.1)).collect();
+                let shown = Axis::of("", heights.iter().copied(), 7);
+                let some = !heights.is_empty() && !shown.is_like(&self.y);
+                (some.then(|| shown.value(shown.low)), some.then(|| shown.value(shown.high)))
+            }
+            (_, from, to) => (from, to),
+        };
+        let new_y = self.y.bounded((from, to), logarithmic(y), lowest);
         let moved =
             |(a, b): (f64, f64)| (new_x.place(self.x.value(a)), new_y.place(self.y.value(b)));
         let good = |(a, b): &(f64, f64)| drawable(*a) && drawable(*b);
@@ -253,6 +266,18 @@ impl Chart {
             (tile.from, tile.to) = (moved(tile.from), moved(tile.to));
         }
         (self.x, self.y) = (new_x, new_y);
+        // kinds of special points of which none is left
+        let (x, y) = (&self.x, &self.y);
+        let left = |kind: &str| {
+            self.marks.iter().any(|mark| {
+                let (a, b) = (x.place(mark.x), y.place(mark.y));
+                shown(&mark.kind) == kind && a >= x.low && a <= x.high && b >= y.low && b <= y.high
+            })
+        };
+        self.legend.retain(|entry| match entry {
+            Entry::Marker { kind } => left(kind),
+            _ => true,
+        });
         self
     }
 

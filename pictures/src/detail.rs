@@ -94,6 +94,8 @@ impl Detail {
             let x = chart.x.part(window.x, 4);
             let y = chart.y.part(window.y, 4);
             let letters = drawing.scaled(LETTERS[3]);
+            let across = x.ticks.iter().map(|tick| text::width(&x.label(*tick), letters) + 12.0);
+            let x = if across.sum::<f64>() > size.0 { chart.x.part(window.x, 2) } else { x };
             let labels = y.ticks.iter().map(|tick| text::width(&y.label(*tick), letters));
             let left = left + 10.0 + labels.fold(0.0, f64::max);
             let own = Frame {

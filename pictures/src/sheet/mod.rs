@@ -112,6 +112,8 @@ pub struct Sheet {
     pub panels: Vec<Panel>,
 }
 
+/// Panels side by side.
+const COLUMNS: usize = 2;
 const MARGIN: f64 = 16.0;
 const HEAD: f64 = 64.0;
 
@@ -120,24 +122,37 @@ impl Sheet {
     pub fn svg(&self, picture: &PictureCase) -> String {
         match picture.parts.title {
             true => self.drawing(&self.title, &self.subtitle, Look::of(picture)),
-            false => self.untitled(picture),
+            false => self.drawing("", "", Look::of(picture)),
         }
     }
 
-    /// The panels alone, for a page that has the title.
-    pub fn untitled(&self, picture: &PictureCase) -> String {
-        self.drawing("", "", Look::of(picture))
+    /// Each panel alone, for a page that has the title and as many columns as fit.
+    pub fn parts(&self, picture: &PictureCase) -> Vec<String> {
+        let layouts = self.layouts(Look::of(picture));
+        // all are equally wide, so that a page scales them alike
+        let width = layouts.iter().map(|layout| layout.width).fold(0.0, f64::max);
+        let alone = |layout: &Layout<'_>| {
+            let mut body = String::new();
+            layout.draw(&mut body, MARGIN, MARGIN);
+            page([width + 2.0 * MARGIN, layout.height + 2.0 * MARGIN], &body)
+        };
+        layouts.iter().map(alone).collect()
     }
 
-    fn drawing(&self, title: &str, subtitle: &str, look: Look) -> String {
-        let mut layouts: Vec<Layout> =
+    /// The panels with their sizes; those of a row are equally high.
+    fn layouts(&self, look: Look) -> Vec<Layout<'_>> {
+        let mut layouts: Vec<Layout<'_>> =
             self.panels.iter().enumerate().map(|(i, p)| Layout::of(p, i, look)).collect();
-        let columns = if layouts.len() > 1 { 2 } else { 1 };
-        // panels of a row are equally high
-        for row in layouts.chunks_mut(columns) {
+        for row in layouts.chunks_mut(COLUMNS) {
             let height = row.iter().map(|layout| layout.plot[1]).fold(0.0, f64::max);
             row.iter_mut().for_each(|layout| layout.heighten(height));
         }
+        layouts
+    }
+
+    fn drawing(&self, title: &str, subtitle: &str, look: Look) -> String {
+        let layouts = self.layouts(look);
+        let columns = layouts.len().clamp(1, COLUMNS);
         let mut widths = vec![0.0_f64; columns];
         for (i, layout) in layouts.iter().enumerate() {
             widths[i % columns] = widths[i % columns].max(layout.width);
@@ -157,20 +172,25 @@ impl Sheet {
             top += row.iter().fold(0.0_f64, |h, layout| h.max(layout.height)) + MARGIN;
         }
         let mut svg = String::new();
-        let _ = write!(
-            svg,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{top:.0}\" \
-             viewBox=\"0 0 {width:.0} {top:.0}\" font-family=\"{FAMILY}\" stroke-linejoin=\"round\" \
-             fill=\"none\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
-        );
         let style = text::Style::title().sized(20.0 * look.letters);
         text::put(&mut svg, title, [MARGIN, 8.0 + 20.0 * look.letters], &style);
         let style = text::Style::small().sized(13.0 * look.letters);
         text::put(&mut svg, subtitle, [MARGIN, 8.0 + 42.0 * look.letters], &style);
         svg.push_str(&body);
-        svg.push_str("</svg>\n");
-        svg
+        page([width, top], &svg)
     }
+}
+
+/// A drawing of a size with what is on it.
+fn page([width, height]: [f64; 2], body: &str) -> String {
+    let mut svg = String::new();
+    let _ = write!(
+        svg,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
+         viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"{FAMILY}\" stroke-linejoin=\"round\" \
+         fill=\"none\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{body}</svg>\n"
+    );
+    svg
 }
 
 #[cfg(test)]

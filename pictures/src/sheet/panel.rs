@@ -63,9 +63,15 @@ impl<'p> Layout<'p> {
         Layout { panel, at, x, y, right, left_room, right_room, look, plot, width, height }
     }
 
-    /// Makes it as high as its neighbour; one with a unit as long on both axes stays as it is.
+    /// Makes it as high as its neighbour; one with a unit as long on both axes shows more of its vertical one.
     pub(super) fn heighten(&mut self, height: f64) {
-        if !self.panel.proportional && height > self.plot[1] {
+        if height > self.plot[1] {
+            if self.panel.proportional {
+                let y = &self.y;
+                let more = (y.high - y.low) * (height / self.plot[1] - 1.0);
+                let high = y.value(y.high + more);
+                self.y = Axis::exactly(&self.panel.y, y.value(y.low), high, 7);
+            }
             self.height += height - self.plot[1];
             self.plot[1] = height;
         }
