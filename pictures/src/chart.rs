@@ -82,6 +82,17 @@ pub(super) struct Tile {
     pub(super) color: Color,
 }
 
+/// The head of an arrow, in the units of the axes' labels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Arrow {
+    /// Where it comes from.
+    pub(super) from: (f64, f64),
+    /// Where its tip is.
+    pub(super) to: (f64, f64),
+    /// Its colour.
+    pub(super) color: Color,
+}
+
 /// A line of the legend.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Entry {
@@ -142,8 +153,8 @@ pub(super) struct Chart {
     pub(super) regions: Vec<(Vec<(f64, f64)>, Color)>,
     /// Lines, the first at the bottom.
     pub(super) lines: Vec<Line>,
-    /// Heads of arrows: where each comes from, where it points to.
-    pub(super) arrows: Vec<((f64, f64), (f64, f64), Color)>,
+    /// Heads of arrows.
+    pub(super) arrows: Vec<Arrow>,
     /// Special points, on top.
     pub(super) marks: Vec<Mark>,
     /// The legend, from the top.
@@ -259,8 +270,8 @@ impl Chart {
         for (points, _) in &mut self.regions {
             points.iter_mut().for_each(|point| *point = moved(*point));
         }
-        for (from, to, _) in &mut self.arrows {
-            (*from, *to) = (moved(*from), moved(*to));
+        for arrow in &mut self.arrows {
+            (arrow.from, arrow.to) = (moved(arrow.from), moved(arrow.to));
         }
         for tile in &mut self.tiles {
             (tile.from, tile.to) = (moved(tile.from), moved(tile.to));

@@ -1,7 +1,7 @@
 //! The pictures of a cycle: the loop with its jumps as arrows, and the shapes before and after each.
 
 use super::axis::Axis;
-use super::chart::{Chart, DrawError, Entry, Line, Stroke};
+use super::chart::{Arrow, Chart, DrawError, Entry, Line, Stroke};
 use super::columns::within;
 use super::detail::{Sought, Window, distance};
 use super::draw::{DISTANCE, FORCE, WIDE, curve_lines, shapes, unstable_entries, values};
@@ -119,14 +119,14 @@ fn hysteresis(cycle: &CyclePictures, title: &str, axes: [&str; 2]) -> Chart {
     let good = |(a, b): Place| drawable(a) && drawable(b);
     for (curve, color) in [(&cycle.retract, way_out), (&cycle.approach, way_in)] {
         if let Some((from, to)) = far_along(curve, scale, units) {
-            arrows.push((in_axes(from), in_axes(to), color));
+            arrows.push(Arrow { from: in_axes(from), to: in_axes(to), color });
         }
     }
     for (from, to) in &cycle.jumps {
         let (a, b) = (in_axes(*from), in_axes(*to));
         if good(a) && good(b) {
             lines.push(Line { points: vec![a, b], color: leap, width: 2, stroke: Stroke::Solid });
-            arrows.push((a, b, leap));
+            arrows.push(Arrow { from: a, to: b, color: leap });
         }
     }
     let solid = |color, label: &str| {

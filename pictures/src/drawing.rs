@@ -1,6 +1,6 @@
 //! A chart as SVG: frame, axes, lines, special points, legend and details, each in its place.
 
-use super::chart::{Chart, Entry, Frame, Line};
+use super::chart::{Arrow, Chart, Entry, Frame, Line};
 use super::detail::Detail;
 use super::label::{self, Names};
 use super::look::Look;
@@ -96,7 +96,7 @@ impl Drawing<'_> {
 
     /// Heads of arrows, as large in every frame.
     pub(super) fn arrows(&self, svg: &mut String, frame: Frame) {
-        for (from, to, color) in &self.chart.arrows {
+        for Arrow { from, to, color } in &self.chart.arrows {
             let ((ax, ay), (bx, by)) = (frame.place(*from), frame.place(*to));
             let length = (bx - ax).hypot(by - ay);
             if !(length > 0.0 && drawable(length) && frame.holds((bx, by))) {

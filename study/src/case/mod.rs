@@ -15,7 +15,7 @@ pub mod keys;
 pub(crate) mod name;
 mod path;
 mod physical;
-mod picture;
+pub(crate) mod picture;
 mod problem;
 pub(crate) mod reader;
 pub(crate) mod resolve;

@@ -151,3 +151,15 @@ fn the_summary_lines_up() {
     assert!(lines[4].contains("force [pN]") || lines[4].contains("force [nN]"), "{text}");
     assert!(lines[5].starts_with("fold") && lines[5].contains("1350.00"), "{text}");
 }
+
+#[test]
+fn axes_may_show_columns_that_there_are() {
+    use crate::case::picture::{PLATES, RING};
+    for (names, known) in [(PLATES, super::column::PLATES), (RING, super::column::RING)] {
+        for name in names {
+            assert!(known.iter().any(|column| column.name == *name), "{name}");
+        }
+    }
+    let columns = Table::contact().columns().to_vec();
+    assert!(PLATES.iter().all(|name| columns.contains(&(*name).to_owned())));
+}
