@@ -256,7 +256,7 @@ mod tests {
             }
         }
         let names: Vec<String> =
-            files(&computed, true).unwrap().into_iter().map(|(name, _)| name).collect();
+            files(&computed, Some(&study::case::PictureCase::default())).unwrap().into_iter().map(|(name, _)| name).collect();
         for name in ["index.html", "claims.json", "fig12.svg", "fig20.png", "data/fig12-d.csv"] {
             assert!(names.iter().any(|n| n == name), "{name}: {names:?}");
         }

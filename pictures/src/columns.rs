@@ -38,6 +38,17 @@ pub(super) fn title(case: &ResolvedCase, table: &Table, column: &str) -> String 
     format!("{label} [{unit}]")
 }
 
+/// The same in a physical unit.
+pub(super) fn physical_title(table: &Table, column: &str, unit: &str) -> String {
+    let label = match column {
+        "z0" => "plate distance z₀",
+        "deformation" => "deformation Δ",
+        "force" => "force F",
+        _ => table.label(column),
+    };
+    format!("{label} [{}]", spoken(unit))
+}
+
 /// What an axis calls the parameter or an observable of a problem of the catalogue: what the catalogue says, else
 /// its name.
 pub(super) fn named(case: &ResolvedCase, name: &str) -> String {
@@ -129,7 +140,7 @@ pub fn draw_columns(
     files.push((COLUMNS[0].to_owned(), svg.into_bytes()));
     if let Some(laboratory) = Laboratory::of(case, &[table]) {
         let of = |column: &str| match laboratory.convert(table.unit(column)) {
-            Some((unit, factor)) => (format!("{} [{}]", table.label(column), spoken(unit)), factor),
+            Some((unit, factor)) => (physical_title(table, column, unit), factor),
             None => (title(case, table, column), 1.0),
         };
         let (x, y) = (of(x), of(y));

@@ -280,7 +280,13 @@ fn hidden(chart: &Chart, frame: Frame) -> Vec<Window> {
             None => found.push(window),
         }
     }
-    found.extend(pull_off(chart, frame, &marks));
+    if let Some(window) = pull_off(chart, frame, &marks) {
+        // what lies in it is seen in it
+        let middle = |(a, b): (f64, f64)| 0.5 * (a + b);
+        let inside = |(a, b): (f64, f64), at: f64| a <= at && at <= b;
+        found.retain(|own| !(inside(window.x, middle(own.x)) && inside(window.y, middle(own.y))));
+        found.push(window);
+    }
     found
 }
 

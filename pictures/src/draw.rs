@@ -165,14 +165,30 @@ pub(super) fn plane(
     picture: &PictureCase,
 ) -> Chart {
     let (low, high) = values(curves, |c| &c.x)
+        .chain(own)
         .filter(|value| drawable(*value))
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    // the case is shown too, where it lies beside all curves
+    let beside = Axis::of(&shown(x), [low, high].into_iter(), 7);
+    let ends = [beside.low, beside.high].map(|end| Some(beside.value(end)));
     let mut chart = chart(title, x, y, curves);
     let mut across = picture.x.clone();
     if across.scale == AxisScale::Automatic && low > 0.0 && high >= 10.0 * low {
-        across = AxisCase { scale: AxisScale::Logarithmic, ..across };
+        let to = across.to.or(Some(1.1 * high));
+        across = AxisCase { scale: AxisScale::Logarithmic, to, ..across };
     }
-    chart = chart.with_axes(&across, &picture.y);
+    if across.scale != AxisScale::Logarithmic && (across.from, across.to) == (None, None) {
+        [across.from, across.to] = ends;
+    } else if across.from.is_none() {
+        across.from = Some(0.9 * low).filter(|low| *low > 0.0);
+    }
+    let upright = AxisCase {
+        from: picture.y.from.or(Some(chart.y.value(chart.y.low))),
+        to: picture.y.to.or(Some(chart.y.value(chart.y.high))),
+        ..picture.y.clone()
+    };
+    let upright = if upright.scale == AxisScale::Logarithmic { &picture.y } else { &upright };
+    chart = chart.with_axes(&across, upright);
     let own = own.map(|value| chart.x.place(value));
     if let Some(at) = own.filter(|at| *at > chart.x.low && *at < chart.x.high) {
         let points = vec![(at, chart.y.low), (at, chart.y.high)];

@@ -48,7 +48,7 @@ pub use text::escape;
 use draw::Level;
 use study::case::ResolvedCase;
 use study::record::view::Curve;
-use study::record::{BranchRecord, DiagramResult, Pictures, spoken};
+use study::record::{BranchRecord, DiagramResult, Pictures};
 
 /// Names of all pictures that a trace may write.
 pub const NAMES: [&str; 6] = [
@@ -107,7 +107,7 @@ fn diagram_chart(
     let of = |column: Option<&str>, title: String| match (column, first) {
         (Some(column), Some(table)) => match convert(table.unit(column)) {
             ("", _) => (title, 1.0),
-            (unit, factor) => (format!("{} [{}]", table.label(column), spoken(unit)), factor),
+            (unit, factor) => (columns::physical_title(table, column, unit), factor),
         },
         _ => (title, 1.0),
     };

@@ -261,7 +261,10 @@ pub(super) fn others(physical: &PhysicalCase) -> Vec<(&'static str, String)> {
             let forces = SurfaceForces::of_well(film, adhesion, TYPICAL * film);
             vec![
                 (POTENTIAL.name, FOUR_TWO.name.to_owned()),
-                (HAMAKER.name, digits(forces.hamaker * 1e21, "zJ")),
+                match forces.hamaker < 1e-18 {
+                    true => (HAMAKER.name, digits(forces.hamaker * 1e21, "zJ")),
+                    false => (HAMAKER.name, digits(forces.hamaker * 1e18, "aJ")),
+                },
                 (PHYSICAL_DEBYE.name, digits(forces.debye * 1e9, "nm")),
                 (DOUBLE_LAYER.name, digits(forces.double_layer * 1e3, "mJ/m2")),
             ]

@@ -378,26 +378,46 @@ pub fn cycle_table(result: &CycleResult) -> Table {
     table
 }
 
-/// The jumps in physical units, and the most attractive force; empty for a case that is dimensionless.
-fn physically(case: &ResolvedCase, result: &CycleResult) -> String {
-    let Some(laboratory) = Laboratory::of(case, &[&result.branch]) else { return String::new() };
-    let unit = |unit: &str| laboratory.convert(unit).unwrap_or(("", 1.0));
-    let (length, force, energy) = (unit("R0"), unit("sqrt(chi k_b)"), unit("chi R0^2"));
-    let number = |value: Option<f64>, factor: f64| {
-        value.map_or_else(|| "–".to_string(), |value| rounded(factor * value))
-    };
-    let mut out = String::new();
-    if !result.jumps.is_empty() {
-        let named = |name: &str, unit: &str| format!("{name} [{}]", spoken(unit));
+/// Lengths, forces and energies of a cycle in physical units.
+struct Physically {
+    length: (String, f64),
+    force: (String, f64),
+    energy: (String, f64),
+}
+
+impl Physically {
+    /// `None` for a case that is dimensionless.
+    fn of(case: &ResolvedCase, result: &CycleResult) -> Option<Self> {
+        let laboratory = Laboratory::of(case, &[&result.branch])?;
+        let unit = |unit: &str| {
+            laboratory
+                .convert(unit)
+                .map(|(unit, factor)| (spoken(unit), factor))
+                .unwrap_or_default()
+        };
+        Some(Physically {
+            length: unit("R0"),
+            force: unit("sqrt(chi k_b)"),
+            energy: unit("chi R0^2"),
+        })
+    }
+
+    /// The jumps once more.
+    fn jumps(&self, jumps: &[JumpRecord]) -> String {
+        let named = |name: &str, unit: &str| format!("{name} [{unit}]");
+        let number = |value: Option<f64>, factor: f64| {
+            value.map_or_else(|| "–".to_string(), |value| rounded(factor * value))
+        };
+        let (length, force, energy) = (&self.length, &self.force, &self.energy);
         let mut rows = vec![vec![
             "in physical units".to_owned(),
-            named("z0 before", length.0),
-            named("z0 after", length.0),
-            named("force before", force.0),
-            named("force after", force.0),
-            named("dissipated", energy.0),
+            named("z0 before", &length.0),
+            named("z0 after", &length.0),
+            named("force before", &force.0),
+            named("force after", &force.0),
+            named("dissipated", &energy.0),
         ]];
-        rows.extend(result.jumps.iter().map(|jump| {
+        rows.extend(jumps.iter().map(|jump| {
             vec![
                 jump.direction.to_owned(),
                 number(jump.z0_before, length.1),
@@ -407,14 +427,14 @@ fn physically(case: &ResolvedCase, result: &CycleResult) -> String {
                 number(jump.dissipated, energy.1),
             ]
         }));
-        out.push_str(&aligned(&rows));
+        aligned(&rows)
     }
-    if let Some((z0, pull)) = result.pull_off {
-        let (a, b) = (number(Some(pull), force.1), number(Some(z0), length.1));
-        let (f, l) = (spoken(force.0), spoken(length.0));
-        let _ = writeln!(out, "pull-off in physical units: force {a} {f} at z0 = {b} {l}");
+
+    /// A place of the path in brackets.
+    fn place(&self, (z0, force): (f64, f64)) -> String {
+        let (f, z) = (rounded(self.force.1 * force), rounded(self.length.1 * z0));
+        format!(" ({f} {} at {z} {})", self.force.0, self.length.0)
     }
-    out
 }
 
 /// The summary; `folder` is where the files went, if they went anywhere.
@@ -441,13 +461,14 @@ pub fn cycle_summary(case: &ResolvedCase, result: &CycleResult, folder: Option<&
         }
         out.push_str(&aligned(&rows));
     }
-    let physical = physically(case, result);
-    if !physical.is_empty() {
-        let _ = write!(out, "\n{physical}");
+    let physical = Physically::of(case, result);
+    if let Some(physical) = physical.as_ref().filter(|_| !result.jumps.is_empty()) {
+        let _ = write!(out, "\n{}", physical.jumps(&result.jumps));
     }
     out.push('\n');
     if let Some((z0, force)) = result.pull_off {
-        let _ = writeln!(out, "pull-off: force {} at z0 = {}", rounded(force), rounded(z0));
+        let place = physical.map(|physical| physical.place((z0, force))).unwrap_or_default();
+        let _ = writeln!(out, "pull-off: force {} at z0 = {}{place}", rounded(force), rounded(z0));
     }
     if let (Some(dissipated), Some(area)) = (result.dissipated, result.loop_area)
         && let Some(imbalance) = result.imbalance()
