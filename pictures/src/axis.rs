@@ -200,7 +200,7 @@ fn power_label(place: f64) -> String {
     let digit = 10_f64.powf(place - f64::from(exponent));
     let round = (digit - 1.0).abs() < 1e-6;
     match (round, exponent) {
-        (_, -1..=2) | (false, -2..=3) => {
+        (_, -1..=3) | (false, -2) => {
             let text = format!("{:.4}", digit * 10_f64.powi(exponent));
             text.trim_end_matches('0').trim_end_matches('.').to_owned()
         }

@@ -177,8 +177,9 @@ impl Detail {
                 &small.anchored("end"),
             );
         }
-        let grid = if drawing.look.parts.grid { grid } else { String::new() };
-        let _ = writeln!(svg, "<path d=\"{grid}\" stroke=\"{}\"/>", hex(GRID));
+        if drawing.look.parts.grid {
+            let _ = writeln!(svg, "<path d=\"{grid}\" stroke=\"{}\"/>", hex(GRID));
+        }
         clip(svg, &format!("detail{}", self.name), frame);
         let lines = self.lines(&drawing.chart.lines);
         for line in &lines {

@@ -115,7 +115,8 @@ fn physically(physical: &PhysicalCase) -> String {
             words.push(format!("E = {}, h = {}", young.text, thickness.text));
         }
         Stiffness::Moduli { chi, bending } => {
-            words.push(format!("χ = {}, k_{{b}} = {}", chi.text, bending.text));
+            let (chi, bending) = (quantity(&chi.text), quantity(&bending.text));
+            words.push(format!("χ = {chi}, k_{{b}} = {bending}"));
         }
     }
     words.push(format!("P_{{A}} = {}", physical.pressure.text));
