@@ -28,6 +28,10 @@ const unitText = (unit) => UNITS[unit] ?? unit;
 /** The same without small letters, for text outside of charts. */
 const flat = (markup) => markup.replace(/\^\{3\}/gu, "³").replace(/\^\{2\}/gu, "²").replace(/_\{0\}/gu, "₀").replace(/[_^]\{([^}]*)\}/gu, "$1");
 
+/** Small letters below and above the line, outside of charts. */
+const small = (markup) => markup.split(/([_^]\{[^}]*\})/u).map((part) => (
+  /^[_^]\{/u.test(part) ? element(part[0] === "_" ? "sub" : "sup", { textContent: part.slice(2, -1) }) : part));
+
 // ---- what is shown
 const view = {
   description: null, branch: null, exact: false, physical: false, x: null, y: null,
@@ -286,6 +290,7 @@ const takeBranch = (branch, exact) => {
   branch.travelled = travelled(branch);
   branch.stretches = stretches(branch);
   view.branch = branch;
+  byId("summary").replaceChildren(...small(branch.about_case));
   view.exact = exact;
   view.point = nearest(branch.travelled, view.along);
   fillAxes();

@@ -199,10 +199,13 @@ test("the potential of the film is exchanged, and its sliders with it", async ()
   await visit("contact", wide, async (page) => {
     const before = await drawn(page);
     assert.equal(await page.locator('[data-key="dimensionless.debye"]').isVisible(), false);
+    assert.match(await page.locator("#summary").textContent(), /^Hooke's law, ν = 0\.5; kb\/.*; 4-2 film$/u);
     await page.locator('[data-key="dimensionless.potential"] select').selectOption("dlvo");
     assert.equal(await page.locator('[data-key="dimensionless.debye"]').isVisible(), true);
     await settled(page, "dimensionless.potential=dlvo dimensionless.debye=0.1");
     assert.notEqual(await drawn(page), before);
+    assert.match(await page.locator("#summary").textContent(), /; DLVO film, λ\/δA = 0\.1$/u);
+    assert.equal(await page.locator("#notes").isVisible(), false);
     assert.equal(await page.locator("#error").isVisible(), false);
     await slider(page, "dimensionless.debye").focus();
     await page.keyboard.press("ArrowRight");

@@ -11,6 +11,9 @@ use super::resolve::Resolver;
 use crate::units::{Dimension, Quantity};
 use shell_contact::film::{Dlvo, Film, SurfaceForces, double_layer_of_surface_potential};
 
+/// What notes say of keys that an override of the potential makes useless.
+pub const PASSED_OVER: &str = "is passed over";
+
 /// A potential, and the keys that no other has.
 struct Choice {
     name: &'static str,
@@ -149,7 +152,7 @@ impl Resolver<'_> {
                 let Some(node) = section.get(key.name) else { continue };
                 if replaced && !given(node.origin) {
                     self.note(format!(
-                        "{} is passed over: potential {name} has no such key",
+                        "{} {PASSED_OVER}: potential {name} has no such key",
                         section.path(key.name)
                     ));
                     continue;

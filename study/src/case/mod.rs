@@ -32,6 +32,7 @@ pub use catalogue::catalogue;
 pub use device::DeviceCase;
 pub use document::{Origin, Override, shown};
 pub use error::{CaseError, Complaint, LoadError};
+pub use film::PASSED_OVER;
 pub use name::plain_name;
 pub use path::{PathEnd, PathQuantity, PhysicalPath};
 pub use physical::{PhysicalCase, Stiffness};
