@@ -132,6 +132,13 @@ fn physical_units_stand_beside_the_dimensionless_ones_everywhere() {
             assert!(there.iter().any(|name| name == file), "{command}: {file}: {there:?}");
         }
     }
+    let out = place.path().join("map");
+    let words = ["map", "polymer", "--over", "adhesion", "--set", "physical.adhesion=0.5 N/m"];
+    let output = arclen(&[&words[..], &["--elements", "100", "-q"]].concat(), &out);
+    assert!(output.status.code() != Some(2), "{output:?}");
+    assert!(names(&out).contains(&"map-physical.svg".to_owned()), "{:?}", names(&out));
+    let table = fs::read_to_string(out.join("fold-0-physical.csv")).unwrap();
+    assert!(table.starts_with("point,z0_nm,adhesion_N_per_m,force_"), "{table}");
     // the same numbers, in nanometres and nanonewtons
     let read = |folder: &str, file: &str, column: &str| -> Vec<f64> {
         let mut table = csv::Reader::from_path(place.path().join(folder).join(file)).unwrap();

@@ -51,23 +51,21 @@ pub fn draw_map(
 
 /// Titles of the axes in physical units, and what numbers must be multiplied with.
 fn physical(case: &ResolvedCase, result: &MapResult) -> Option<(String, String, (f64, f64))> {
-    let ProblemCase::Contact(contact) = &case.problem else { return None };
-    let given = contact.physical.as_ref()?;
     let tables: Vec<_> = result.curves.iter().map(|curve| &curve.table).collect();
     let laboratory = Laboratory::of(case, &tables)?;
-    let (chi, radius) = (given.chi(), given.radius.si);
-    let (length, unit) = laboratory.convert("R0").map(|(unit, factor)| (factor, spoken(unit)))?;
-    let (pressure, kind) =
-        laboratory.convert("chi/R0").map(|(unit, factor)| (factor, spoken(unit)))?;
-    let (x, factor) = match result.key.as_str() {
-        "adhesion" => ("adhesion w₀ [mN/m]".to_owned(), 1e3 * chi),
-        "surface_tension" => ("surface tension γ_{BW} [mN/m]".to_owned(), 1e3 * chi),
-        "bending" => ("bending stiffness k_{b} [aJ]".to_owned(), 1e18 * chi * radius * radius),
-        "pressure" => (format!("ambient pressure P_{{A}} [{kind}]"), pressure),
-        "film" => ("film length δ_{A} [nm]".to_owned(), 1e9 * radius),
+    let table = tables.first()?;
+    let words = match result.key.as_str() {
+        "adhesion" => "adhesion w₀",
+        "surface_tension" => "surface tension γ_{BW}",
+        "bending" => "bending stiffness k_{b}",
+        "pressure" => "ambient pressure P_{A}",
+        "film" => "film length δ_{A}",
         _ => return None,
     };
-    Some((x, format!("plate distance z₀ [{unit}]"), (factor, length)))
+    let (unit, x) = laboratory.convert(table.unit(&result.key))?;
+    let (length, y) = laboratory.convert("R0")?;
+    let first = format!("plate distance z₀ [{}]", spoken(length));
+    Some((format!("{words} [{}]", spoken(unit)), first, (x, y)))
 }
 
 fn chart(case: &ResolvedCase, result: &MapResult, titles: [&str; 2], (x, y): (f64, f64)) -> Chart {

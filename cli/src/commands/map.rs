@@ -9,7 +9,7 @@ use crate::exit::Exit;
 
 use crate::terminal;
 use study::case::ResolvedCase;
-use study::record::{MapResult, branch_csv, map_json, map_summary};
+use study::record::{Laboratory, MapResult, Table, branch_csv, map_json, map_summary};
 use study::run::run_map;
 use study::store::Folder;
 
@@ -58,8 +58,14 @@ fn deliver(
     let mut made = Made::json(MAP, map_json(result));
     if folder.is_some() {
         made.file(CASE, case.to_toml());
+        let tables: Vec<&Table> = result.curves.iter().map(|curve| &curve.table).collect();
+        let laboratory = Laboratory::of(case, &tables);
         for curve in &result.curves {
             made.attempt(curve.csv.clone(), branch_csv(&curve.table));
+            if let Some(laboratory) = &laboratory {
+                let name = curve.csv.replace(".csv", "-physical.csv");
+                made.attempt(name, branch_csv(&laboratory.table(case, &curve.table)));
+            }
         }
         if !arguments.output.no_pictures && !result.curves.is_empty() {
             made.files(pictures::draw_map(case, result));

@@ -19,7 +19,7 @@ pub mod view;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use column::RING;
+pub(crate) use column::{PLATES, RING};
 pub use cycle::{CycleResult, FoldRecord, JumpRecord, PathModes, PathRow, ReportedCycle};
 pub use cycle::{StretchRecord, Way, cycle_json, cycle_summary, cycle_table};
 pub use diagram::{BranchOrigin, BranchRecord, DiagramResult, NearRecord, Symmetry};

@@ -14,6 +14,8 @@ pub struct Scales {
     pub pressure: f64,
     /// `chi R0²`, in J.
     pub energy: f64,
+    /// `chi`, in N/m.
+    pub tension: f64,
     /// `w0 / delta_A`, in Pa, the unit of the film's pressure.
     pub film_pressure: f64,
 }
@@ -29,6 +31,7 @@ impl Scales {
             force: physical.force_scale(&contact.groups),
             pressure: chi / radius,
             energy: chi * radius * radius,
+            tension: chi,
             film_pressure: physical.adhesion.si / physical.film.si,
         })
     }
@@ -41,6 +44,7 @@ const LENGTHS: [Unit; 3] = [("nm", 1e-9), ("um", 1e-6), ("mm", 1e-3)];
 const FORCES: [Unit; 4] = [("pN", 1e-12), ("nN", 1e-9), ("uN", 1e-6), ("mN", 1e-3)];
 const PRESSURES: [Unit; 4] = [("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9)];
 const ENERGIES: [Unit; 4] = [("aJ", 1e-18), ("fJ", 1e-15), ("pJ", 1e-12), ("nJ", 1e-9)];
+const TENSIONS: [Unit; 3] = [("uN/m", 1e-6), ("mN/m", 1e-3), ("N/m", 1.0)];
 const VOLUMES: [Unit; 3] = [("nm^3", 1e-27), ("um^3", 1e-18), ("mm^3", 1e-9)];
 
 /// A unit gives way to the next one where numbers reach this; lengths of shells stay in nanometres
@@ -58,8 +62,10 @@ pub struct PhysicalUnits {
     pub force: Unit,
     /// Of pressures.
     pub pressure: Unit,
-    /// Of energies.
+    /// Of energies, bending moduli among them.
     pub energy: Unit,
+    /// Of tensions, adhesion among them.
+    pub tension: Unit,
     /// Of the film's pressure.
     pub film_pressure: Unit,
 }
@@ -87,6 +93,7 @@ impl PhysicalUnits {
             volume: choose(&VOLUMES, scales.length.powi(3) * largest("R0^3")),
             force: choose(&FORCES, scales.force * largest("sqrt(chi k_b)")),
             pressure: choose(&PRESSURES, scales.pressure * largest("chi/R0")),
+            tension: choose(&TENSIONS, scales.tension * largest("chi")),
             energy: choose(&ENERGIES, scales.energy * largest("chi R0^2")),
             film_pressure: choose(&PRESSURES, scales.film_pressure),
         }
@@ -100,6 +107,7 @@ impl PhysicalUnits {
             "sqrt(chi k_b)" => (self.force, scales.force),
             "chi/R0" => (self.pressure, scales.pressure),
             "chi R0^2" => (self.energy, scales.energy),
+            "chi" => (self.tension, scales.tension),
             "w0/delta_A" => (self.film_pressure, scales.film_pressure),
             _ => return None,
         };
@@ -145,7 +153,7 @@ impl Laboratory {
         let mut numbers: Vec<Vec<f64>> = Vec::new();
         for name in columns {
             let Some((unit, factor)) = self.convert(table.unit(name)) else { continue };
-            titles.push(format!("{name}_{}", unit.replace('^', "")));
+            titles.push(format!("{name}_{}", unit.replace('^', "").replace('/', "_per_")));
             numbers.push(table.numbers(name).into_iter().map(|value| factor * value).collect());
         }
         for (name, values) in of_the_laboratory(case, &self.scales, table) {
