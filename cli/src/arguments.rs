@@ -63,6 +63,13 @@ pub(crate) fn set(texts: &[String]) -> impl Iterator<Item = Override> {
     texts.iter().map(|text| Override::given_by("--set", text))
 }
 
+impl OutputArguments {
+    /// The overrides of `--picture`.
+    pub(crate) fn looks(&self) -> impl Iterator<Item = Override> {
+        self.picture.iter().map(|text| Override::given_by("--picture", format!("picture.{text}")))
+    }
+}
+
 /// The override of an option that is short for another.
 pub(crate) fn short(flag: &'static str, key: &str, value: Option<&str>) -> Option<Override> {
     value.map(|value| Override::given_by(flag, format!("{key}={value}")))
@@ -101,6 +108,11 @@ impl CaseArguments {
         let own =
             own.into_iter().filter_map(|(flag, key, value)| short(flag, key, value.as_deref()));
         set(&self.set).chain(own).collect()
+    }
+
+    /// The same with those of `--picture` after them.
+    pub(crate) fn with_looks(&self, output: &OutputArguments) -> Vec<Override> {
+        self.overrides().into_iter().chain(output.looks()).collect()
     }
 
     /// The words that give the same case on a command line.
@@ -181,7 +193,7 @@ impl DiagramArguments {
     /// The case, with the depth among its overrides.
     pub(crate) fn overrides(&self) -> Vec<Override> {
         let depth = short("--depth", "diagram.depth", self.depth.as_deref());
-        self.case.overrides().into_iter().chain(depth).collect()
+        self.case.overrides().into_iter().chain(depth).chain(self.output.looks()).collect()
     }
 }
 
@@ -208,7 +220,7 @@ impl OrbitsArguments {
     /// The case, with the depth among its overrides.
     pub(crate) fn overrides(&self) -> Vec<Override> {
         let depth = short("--depth", "diagram.cycle_depth", self.depth.as_deref());
-        self.case.overrides().into_iter().chain(depth).collect()
+        self.case.overrides().into_iter().chain(depth).chain(self.output.looks()).collect()
     }
 }
 
@@ -356,6 +368,8 @@ pub(crate) enum Format {
     Svg,
     /// Pixels, two to one of the SVG
     Png,
+    /// A page of the picture's size
+    Pdf,
 }
 
 /// What to do with the results.
@@ -371,8 +385,17 @@ pub(crate) struct OutputArguments {
     #[arg(long)]
     pub(crate) no_pictures: bool,
     /// Formats of the pictures, apart by commas; pages and fits have theirs
-    #[arg(long, value_enum, value_name = "svg,png", value_delimiter = ',', default_value = "svg")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "svg,png,pdf",
+        value_delimiter = ',',
+        default_value = "svg"
+    )]
     pub(crate) format: Vec<Format>,
+    /// How pictures look, as --set picture.KEY=VALUE, e.g. --picture legend=false; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) picture: Vec<String>,
     /// No progress, no summary, no notes
     #[arg(long, short)]
     pub(crate) quiet: bool,

@@ -28,6 +28,10 @@ const unitText = (unit) => UNITS[unit] ?? unit;
 /** The same without small letters, for text outside of charts. */
 const flat = (markup) => markup.replace(/\^\{3\}/gu, "³").replace(/\^\{2\}/gu, "²").replace(/_\{0\}/gu, "₀").replace(/[_^]\{([^}]*)\}/gu, "$1");
 
+/** Small letters below and above the line, outside of charts. */
+const small = (markup) => markup.split(/([_^]\{[^}]*\})/u).map((part) => (
+  /^[_^]\{/u.test(part) ? element(part[0] === "_" ? "sub" : "sup", { textContent: part.slice(2, -1) }) : part));
+
 // ---- what is shown
 const view = {
   description: null, branch: null, exact: false, physical: false, x: null, y: null,
@@ -286,6 +290,7 @@ const takeBranch = (branch, exact) => {
   branch.travelled = travelled(branch);
   branch.stretches = stretches(branch);
   view.branch = branch;
+  byId("summary").replaceChildren(...small(branch.about_case));
   view.exact = exact;
   view.point = nearest(branch.travelled, view.along);
   fillAxes();
@@ -430,10 +435,12 @@ const makeControl = (about, place) => {
   back.setAttribute("aria-label", back.title);
   const control = { about, own, usual: about.quantity ? split(about.value)[0] : about.value };
   const full = (value) => (about.quantity && !/[a-zµ]\s*[\w/]*$/iu.test(split(value)[1]) ? `${value} ${about.unit}` : value);
+  control.full = full;
   control.put = (value, tell) => {
     const usual = Number(value) === Number(control.usual) || value === control.usual;
     own.classList.toggle("changed", !usual);
-    if (usual) view.changed.delete(about.key);
+    // what the case does not have is always said
+    if (usual && about.own) view.changed.delete(about.key);
     else view.changed.set(about.key, full(value));
     control.show(value);
     if (tell) moved();
@@ -485,15 +492,20 @@ const makeControl = (about, place) => {
   control.show(control.usual);
   return control;
 };
-/** The constant of one law only. */
+/** What only one law or one film has: shown, and sent where the case has no value of its own, as long as it is chosen. */
 const dependent = () => {
-  const law = controls.find(({ about }) => about.key === "shell.law");
-  const constant = controls.find(({ about }) => about.key === "shell.b");
-  if (!law || !constant) return;
-  const needed = law.own.querySelector("select").value === "mooney-rivlin";
-  constant.own.hidden = !needed;
-  if (!needed) view.changed.delete("shell.b");
-  else if (law.usual !== "mooney-rivlin") view.changed.set("shell.b", constant.own.querySelector("input[type=text]").value);
+  for (const { about, own, usual, full } of controls) {
+    if (!about.needs) continue;
+    const [key, word] = about.needs;
+    const choice = controls.find((other) => other.about.key === key);
+    if (!choice) continue;
+    const needed = choice.own.querySelector("select").value === word;
+    own.hidden = !needed;
+    if (!needed) view.changed.delete(about.key);
+    else if (!about.own && !view.changed.has(about.key)) {
+      view.changed.set(about.key, about.quantity ? full(usual) : own.querySelector("input[type=text]").value);
+    }
+  }
 };
 const resetAll = () => {
   for (const control of controls) {

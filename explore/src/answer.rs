@@ -3,7 +3,7 @@
 use crate::trace::Traced;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use study::case::ProblemCase;
+use study::case::{PASSED_OVER, ProblemCase};
 use study::record::{EventRecord, PhysicalUnits, Scales, State, Table, TraceResult};
 
 /// What is known of the stability of the state at a point; the page draws each in its own way.
@@ -58,6 +58,8 @@ struct About<'a> {
 
 #[derive(Debug, Serialize)]
 struct Branch<'a> {
+    /// Law, groups and potential, or what the problem is; `_{…}` and `^{…}` set small.
+    about_case: String,
     parameter: &'a str,
     elements: Option<usize>,
     columns: BTreeMap<&'a str, Vec<Option<f32>>>,
@@ -75,7 +77,7 @@ struct Branch<'a> {
     stopped: String,
     complete: bool,
     warning: Option<String>,
-    notes: &'a [String],
+    notes: Vec<&'a String>,
     /// Milliseconds from the request to the branch.
     took: f64,
 }
@@ -111,7 +113,10 @@ pub(crate) fn branch(
     } else if !result.stopped_detail.is_empty() {
         stopped += &format!(" ({})", result.stopped_detail);
     }
+    // what a person chooses on the page needs no remark there
+    let notes: Vec<&String> = notes.iter().filter(|note| !note.contains(PASSED_OVER)).collect();
     let document = Branch {
+        about_case: pictures::titled("", case).trim().to_owned(),
         parameter: &result.parameter,
         elements,
         columns: names().map(|name| (name.as_str(), column(&table.numbers(name)))).collect(),

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use study::case::keys::{Kind, TABLES};
-use study::case::{CatalogueEntry, ProblemCase, ResolvedCase};
+use study::case::{CatalogueEntry, ProblemCase, ResolvedCase, alternatives, needs};
 
 /// How far a slider goes from the value of the case, as a factor, where its range has no end.
 const FAR: f64 = 100.0;
@@ -42,8 +42,13 @@ pub(crate) struct Control {
     pub(crate) quantity: bool,
     /// Words to choose from; empty for a number.
     pub(crate) words: Vec<String>,
-    /// Its value in the case.
+    /// Its value in the case, or one to begin with.
     pub(crate) value: String,
+    /// The key and the word of another control without which this one has no meaning.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) needs: Option<(String, &'static str)>,
+    /// Whether the case has a value of its own.
+    pub(crate) own: bool,
     /// How its slider is divided.
     pub(crate) division: Division,
     /// Ends of its slider.
@@ -64,6 +69,7 @@ pub(crate) fn controls(case: &ResolvedCase, catalogue: &[CatalogueEntry]) -> Vec
     };
     let groups = if physical { "physical" } else { "dimensionless" };
     let tables = [groups, "plate.top", "plate.bottom", "shell", "device", "path"];
+    let others = alternatives(case);
     let mut found = Vec::new();
     for table in tables {
         let own = TABLES.iter().filter(|keys| keys.table == table);
@@ -72,22 +78,33 @@ pub(crate) fn controls(case: &ResolvedCase, catalogue: &[CatalogueEntry]) -> Vec
         });
         for key in own.flat_map(|keys| keys.keys) {
             let path = format!("{table}.{}", key.name);
-            // a law that has no such constant may be exchanged for one that has
-            let absent = (path == "shell.b").then_some(toml::Value::Float(0.5));
-            let Some(value) = at(&resolved, &path).cloned().or(absent) else { continue };
-            // another potential or device would need keys that the case does not have
-            let fixed = key.name == "potential"
-                || matches!(
-                    path.as_str(),
-                    "device.kind" | "plate.top.device" | "plate.bottom.device"
-                );
+            // a law or a potential may be exchanged for one that has this key
+            let own = at(&resolved, &path).cloned();
+            let has_own = own.is_some();
+            let other =
+                || others.iter().find(|(key, _)| *key == path).map(|(_, text)| value_of(text));
+            let Some(value) = own.or_else(other) else { continue };
+            // another device would need keys that the case does not have
+            let fixed =
+                matches!(path.as_str(), "device.kind" | "plate.top.device" | "plate.bottom.device");
             let offered = table != "path" || matches!(key.name, "start" | "end");
             if offered && !fixed {
-                found.extend(control(&path, key, &value));
+                let made = control(&path, key, &value);
+                found.extend(made.map(|made| Control {
+                    needs: needs(table, key.name),
+                    own: has_own || key.name == "potential",
+                    ..made
+                }));
             }
         }
     }
     found
+}
+
+/// A value as a case file has it: a number, or words.
+fn value_of(text: &str) -> toml::Value {
+    let number = text.parse().map(toml::Value::Float);
+    number.unwrap_or_else(|_| toml::Value::String(text.to_owned()))
 }
 
 /// The value at a path of keys.
@@ -114,6 +131,8 @@ fn control(path: &str, key: &study::case::keys::Key, value: &toml::Value) -> Opt
         quantity: false,
         words: Vec::new(),
         value: String::new(),
+        needs: None,
+        own: true,
         division: Division::Typed,
         ends: [0.0, 1.0],
     };
@@ -167,6 +186,8 @@ fn of_catalogue(resolved: &toml::Table, entry: &CatalogueEntry) -> Vec<Control> 
         quantity: false,
         words: Vec::new(),
         value: String::new(),
+        needs: None,
+        own: true,
         division: Division::Typed,
         ends: [0.0, 1.0],
     };
@@ -281,6 +302,8 @@ mod tests {
                 "dimensionless.film",
                 "dimensionless.surface_tension",
                 "dimensionless.gas_exponent",
+                "dimensionless.potential",
+                "dimensionless.debye",
                 "shell.law",
                 "shell.poisson",
                 "shell.b",
@@ -311,6 +334,43 @@ mod tests {
         assert_eq!(quantity("nm"), None);
     }
 
+    /// What a page sends with a choice: the values that go with it.
+    fn others_of(controls: &[Control], needs: &(String, &'static str)) -> Vec<String> {
+        let with = controls.iter().filter(|one| one.needs.as_ref() == Some(needs) && !one.own);
+        with.map(|one| match one.quantity {
+            true => format!("{}=\"{}\"", one.key, one.value),
+            false => format!("{}={}", one.key, one.value),
+        })
+        .collect()
+    }
+
+    #[test]
+    fn the_potential_of_the_film_can_be_exchanged() {
+        let catalogue = catalogue();
+        for (case, word) in
+            [("fig12", "dlvo"), ("polymer", "dlvo"), ("dlvo", "four-two"), ("two-plates", "dlvo")]
+        {
+            let all = of(case);
+            let choice = all.iter().find(|control| control.key.ends_with("potential")).unwrap();
+            assert_eq!(choice.words, ["four-two", "dlvo"], "{case}");
+            let mut texts = vec![format!("{}={word}", choice.key)];
+            texts.extend(others_of(&all, &(choice.key.clone(), word)));
+            assert!(texts.len() > 1, "{case}: {texts:?}");
+            let overrides: Vec<_> =
+                texts.iter().map(|text| study::case::Override::new(text.as_str())).collect();
+            let loaded = load(case.as_ref(), &overrides, &catalogue).unwrap().case;
+            let before = load(case.as_ref(), &[], &catalogue).unwrap().case;
+            assert_ne!(loaded.problem, before.problem, "{case}");
+            if let (ProblemCase::Contact(a), ProblemCase::Contact(b)) =
+                (&loaded.problem, &before.problem)
+            {
+                // the film begins as high and as deep as it was
+                assert!((a.groups.film / b.groups.film - 1.0).abs() < 2e-3, "{case}");
+                assert!((a.groups.adhesion / b.groups.adhesion - 1.0).abs() < 2e-2, "{case}");
+            }
+        }
+    }
+
     #[test]
     fn every_slider_begins_and_ends_inside_its_range() {
         let catalogue = catalogue();
@@ -320,16 +380,28 @@ mod tests {
         {
             for control in of(case).iter().filter(|control| control.words.is_empty()) {
                 let [low, high] = control.ends;
+                // whether surface forces make a film depends on all of them: the page says it
+                if control.needs == Some(("physical.potential".to_owned(), "dlvo")) {
+                    continue;
+                }
                 assert!(low <= high && low.is_finite() && high.is_finite(), "{case}: {control:?}");
                 let ends = [low, high].map(|end| match control.quantity {
                     true => format!("{}=\"{end} {}\"", control.key, control.unit),
                     false => format!("{}={end}", control.key),
                 });
-                // the law of the case takes any end of its sliders; two ends need not go together
-                let law = (control.key == "shell.b").then_some("shell.law=mooney-rivlin");
+                // two ends need not go together
+                let law = control.needs.as_ref().map(|(key, word)| format!("{key}={word}"));
+                let with: Vec<String> = control
+                    .needs
+                    .iter()
+                    .flat_map(|needs| others_of(&of(case), needs))
+                    .filter(|text| !text.starts_with(&format!("{}=", control.key)))
+                    .collect();
                 for end in &ends {
                     let overrides: Vec<_> = law
-                        .into_iter()
+                        .iter()
+                        .chain(&with)
+                        .map(String::as_str)
                         .chain([end.as_str()])
                         .map(study::case::Override::new)
                         .collect();

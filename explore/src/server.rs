@@ -244,7 +244,7 @@ impl Explorer {
             "events.json" => events_json(&traced.result).ok().map(|text| Answer::of(JSON, text)),
             _ => match physical {
                 true => pictures::draw_physical(&traced.case, &traced.result),
-                false => pictures::draw_all(&traced.result.pictures),
+                false => pictures::draw_all(&traced.case, &traced.result.pictures),
             }
             .ok()
             .and_then(|all| {

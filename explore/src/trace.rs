@@ -224,11 +224,10 @@ impl Bench {
             ended = self.is_awaited();
             if ended { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let mut result = run_trace_reported(&case, observer)?;
+        let result = run_trace_reported(&case, observer)?;
         if ended {
             return Ok(None);
         }
-        result.pictures.title = pictures::titled(&result.pictures.title, &case);
         let took = clock.elapsed();
         let traced = Arc::new(Traced { case, notes, result, cut: false, took });
         *locked(&self.last) = Some((set.to_vec(), Arc::clone(&traced)));

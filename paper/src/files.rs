@@ -6,7 +6,8 @@ use super::page::page;
 use super::ring::RingBranch;
 use super::windows;
 use super::{Computed, Figure};
-use pictures::{Panel, Pen, PngError, png};
+use pictures::{DrawingError, Panel, Pen, png};
+use study::case::PictureCase;
 use study::record::branch_csv;
 use study::run::contact_result;
 
@@ -19,7 +20,7 @@ pub enum FileError {
         /// The figure.
         figure: u32,
         /// What happened.
-        error: PngError,
+        error: DrawingError,
     },
     /// A table.
     #[error("{name}: {error}")]
@@ -43,17 +44,20 @@ pub(super) fn data_name(figure: u32, letter: &str) -> String {
     format!("data/{}-{}.csv", stem(figure), letter.replace(", ", "-").replace(' ', "-"))
 }
 
-/// All files: name and content. Without `pictures` neither drawings nor pictures nor the page.
+/// All files: name and content. Without a `look` of pictures neither drawings nor pictures nor the page.
 ///
 /// # Errors
 /// When a picture or table cannot be made.
-pub fn files(computed: &Computed, pictures: bool) -> Result<Vec<(String, Vec<u8>)>, FileError> {
+pub fn files(
+    computed: &Computed,
+    look: Option<&PictureCase>,
+) -> Result<Vec<(String, Vec<u8>)>, FileError> {
     let mut files = vec![("claims.json".to_owned(), claims_json(&computed.claims)?.into_bytes())];
     let mut drawings = Vec::new();
     for figure in &computed.figures {
         let number = figure.manifest.number;
-        if pictures {
-            drawings.push(figure.sheet.svg());
+        if let Some(look) = look {
+            drawings.push(figure.sheet.svg(look));
         }
         for (panel, spec) in figure.sheet.panels.iter().zip(&figure.manifest.panels) {
             let name = data_name(number, &spec.letter);
@@ -81,7 +85,7 @@ pub fn files(computed: &Computed, pictures: bool) -> Result<Vec<(String, Vec<u8>
         let table = ring_csv(ring).map_err(|error| FileError::Csv { name: name.clone(), error })?;
         files.push((name, table));
     }
-    if pictures {
+    if let Some(look) = look {
         let made = pngs(&computed.figures, &drawings);
         for ((figure, svg), png) in computed.figures.iter().zip(&drawings).zip(made) {
             let number = figure.manifest.number;
@@ -90,14 +94,15 @@ pub fn files(computed: &Computed, pictures: bool) -> Result<Vec<(String, Vec<u8>
             files.push((format!("{}.png", stem(number)), png));
         }
         // the page has the titles itself
-        let untitled: Vec<String> = computed.figures.iter().map(|f| f.sheet.untitled()).collect();
-        files.push(("index.html".to_owned(), page(computed, &untitled).into_bytes()));
+        let panels: Vec<Vec<String>> =
+            computed.figures.iter().map(|figure| figure.sheet.parts(look)).collect();
+        files.push(("index.html".to_owned(), page(computed, &panels).into_bytes()));
     }
     Ok(files)
 }
 
 /// The pictures, made side by side.
-fn pngs(figures: &[Figure], drawings: &[String]) -> Vec<Result<Vec<u8>, PngError>> {
+fn pngs(figures: &[Figure], drawings: &[String]) -> Vec<Result<Vec<u8>, DrawingError>> {
     let workers = std::thread::available_parallelism().map_or(1, usize::from).max(1);
     let part = figures.len().div_ceil(workers).max(1);
     std::thread::scope(|scope| {

@@ -255,8 +255,11 @@ mod tests {
                 assert!(points.min().unwrap() > 1);
             }
         }
-        let names: Vec<String> =
-            files(&computed, true).unwrap().into_iter().map(|(name, _)| name).collect();
+        let names: Vec<String> = files(&computed, Some(&study::case::PictureCase::default()))
+            .unwrap()
+            .into_iter()
+            .map(|(name, _)| name)
+            .collect();
         for name in ["index.html", "claims.json", "fig12.svg", "fig20.png", "data/fig12-d.csv"] {
             assert!(names.iter().any(|n| n == name), "{name}: {names:?}");
         }

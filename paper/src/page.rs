@@ -11,9 +11,9 @@ use std::fmt::Write;
 
 const STYLE: &str = include_str!("page.css");
 
-/// The page as HTML, with these drawings; it needs no other file to be read, and links the data
+/// The page as HTML, with these drawings of each figure's panels; it needs no other file to be read, and links the data
 /// beside it.
-pub(super) fn page(computed: &Computed, drawings: &[String]) -> String {
+pub(super) fn page(computed: &Computed, drawings: &[Vec<String>]) -> String {
     let mut out = String::from(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n",
@@ -51,15 +51,16 @@ pub(super) fn page(computed: &Computed, drawings: &[String]) -> String {
     }
     out.push_str("</nav>\n");
     claims(&mut out, &computed.claims);
-    for (figure, svg) in computed.figures.iter().zip(drawings) {
+    for (figure, panels) in computed.figures.iter().zip(drawings) {
         let m = &figure.manifest;
         let n = m.number;
         let _ = write!(out, "<section id=\"fig{n}\"><h2>");
         small(&mut out, &m.heading());
         out.push_str("</h2>\n");
-        // ids of clipping paths are unique in one drawing only
-        let svg = svg.replace("frame-", &format!("f{n}-frame-"));
-        let _ = write!(out, "<div class=\"drawing\">{svg}</div><p>");
+        // ids of clipping paths are unique in one figure only
+        let own = format!("f{n}-frame-");
+        let drawn: String = panels.iter().map(|svg| svg.replace("frame-", &own)).collect();
+        let _ = write!(out, "<div class=\"drawing\">{drawn}</div><p>");
         small(&mut out, &m.caption);
         out.push_str("</p>\n");
         if !m.notes.is_empty() {

@@ -11,9 +11,40 @@
   const title = document.getElementById("title");
   title.textContent = data.title;
   document.getElementById("subtitle").textContent = data.subtitle;
+  // small letters below and above the line
+  const small = (text) => text.split(/([_^]\{[^}]*\})/u).map((part) => (
+    /^[_^]\{/u.test(part) ? element(part[0] === "_" ? "sub" : "sup", { textContent: part.slice(2, -1) }) : part));
+  document.getElementById("about").append(...small(data.about));
+
+  // ---- units: the page is loaded again in others, at the same point
+  const asked = new URLSearchParams(location.hash.slice(1));
+  const { laboratory } = data;
+  const physical = Boolean(laboratory) && asked.get("units") === "physical";
+  const radius = physical ? laboratory.length[1] : 1;
+  if (physical) {
+    const times = (values, factor) => values.map((value) => (value === null ? null : factor * value));
+    for (const curve of curves) {
+      for (const [name, values] of Object.entries(curve.columns)) {
+        const unit = laboratory.columns[name];
+        if (unit) curve.columns[name] = times(values, unit[1]);
+      }
+      for (const state of curve.states) {
+        if (state.plate !== null) state.plate *= radius;
+        state.sigma = times(state.sigma, radius);
+        state.z = times(state.z, radius);
+        state.pressure = times(state.pressure, laboratory.film[1]);
+      }
+    }
+    for (const chart of charts) if (chart.physical) [chart.x[1], chart.y] = chart.physical;
+  }
+  const lengths = physical ? ["distance from the axis σ", "height z"].map((name) => `${name} [${laboratory.length[0]}]`)
+    : ["distance from the axis σ/R₀", "height z/R₀"];
 
   // ---- numbers as text
-  const words = (name) => name.replaceAll("_", " ");
+  const words = (name) => {
+    const unit = physical ? laboratory.columns[name]?.[0] : null;
+    return `${name.replaceAll("_", " ")}${unit ? ` [${unit}]` : ""}`;
+  };
   const text = (value) => {
     if (value === null || value === undefined) return "–";
     if (value === 0) return "0";
@@ -114,7 +145,12 @@
     curve.point = 0;
   });
 
-  const selected = { curve: Math.min(data.selected, Math.max(0, curves.length - 1)) };
+  const opened = Number(asked.get("curve") ?? data.selected) || 0;
+  const selected = { curve: Math.min(Math.max(0, opened), Math.max(0, curves.length - 1)) };
+  if (curves.length > 0) {
+    const at = Number(asked.get("point")) || 0;
+    curves[selected.curve].point = Math.min(Math.max(0, at), curves[selected.curve].size - 1);
+  }
   const current = () => curves[selected.curve];
   const state = (curve) => {
     // the nearest one that is kept
@@ -529,12 +565,12 @@
   };
   const of_shape = () => {
     const all = curves.flatMap((curve) => curve.states);
-    const wide = 1.06 * Math.max(1, ...all.map((one) => Math.max(...one.sigma)));
-    const high = 1.06 * Math.max(1, ...all.map((one) => Math.max(...one.z)));
+    const wide = 1.06 * Math.max(radius, ...all.map((one) => Math.max(...one.sigma)));
+    const high = 1.06 * Math.max(radius, ...all.map((one) => Math.max(...one.z)));
     const turn = Array.from({ length: 121 }, (_, i) => (i * Math.PI) / 60);
-    const rest = { x: turn.map(Math.cos), y: turn.map(Math.sin), from: 0, to: 120, width: 1, dashed: true };
+    const rest = { x: turn.map((a) => radius * Math.cos(a)), y: turn.map((a) => radius * Math.sin(a)), from: 0, to: 120, width: 1, dashed: true };
     return {
-      name: "Shape", kind: "shape live", x: "distance from the axis σ/R₀", y: "height z/R₀",
+      name: "Shape", kind: "shape live", x: lengths[0], y: lengths[1],
       height: (width) => Math.round(Math.min(470, Math.max(280, 0.92 * width))),
       range: (scale, self) => {
         // one unit is as long on both axes
@@ -560,11 +596,12 @@
   };
   const of_pressure = () => {
     const limits = curves.map((curve) => ({
-      x: [0, 1.04 * Math.max(0.1, ...curve.states.map((one) => Math.max(...one.sigma)))],
+      x: [0, 1.04 * Math.max(0.1 * radius, ...curve.states.map((one) => Math.max(...one.sigma)))],
       y: extent(curve.states.map((one) => one.pressure)),
     }));
     return {
-      name: "Pressure of the film", kind: "own live", x: "distance from the axis σ/R₀", y: "pressure Π δ_A/w₀",
+      name: "Pressure of the film", kind: "own live", x: lengths[0],
+      y: physical ? `pressure Π [${laboratory.film[0]}]` : "pressure Π δ_A/w₀",
       height: (width) => Math.round(Math.min(360, Math.max(260, 0.72 * width))),
       range: (scale) => limits[selected.curve][scale],
       lines: () => {
@@ -600,5 +637,18 @@
     }
   }).observe(document.getElementById("charts"));
   sliders.forEach(({ output }, k) => { output.textContent = `1 / ${curves[k].size}`; });
+  if (laboratory) {
+    const choice = document.getElementById("units");
+    choice.hidden = false;
+    for (const button of choice.querySelectorAll("button")) {
+      const here = (button.value === "physical") === physical;
+      button.setAttribute("aria-pressed", String(here));
+      button.addEventListener("click", () => {
+        if (here) return;
+        location.hash = `units=${button.value}&curve=${selected.curve}&point=${current()?.point ?? 0}`;
+        location.reload();
+      });
+    }
+  }
   if (curves.length > 0) show(true);
 })();

@@ -1,12 +1,13 @@
 //! One chart: axes, lines, markers with their names, and a legend beside them that covers nothing.
 
 use super::axis::Axis;
-use super::label::{self, Names};
-use super::palette::{Color, FAINT, Form, GRID, form, hex};
-use super::path::{self, Place};
-use super::sheet::FAMILY;
-use super::text::{self, Style};
-use std::fmt::Write as _;
+use super::detail::Sought;
+use super::drawing::Drawing;
+use super::label;
+use super::look::Look;
+use super::palette::Color;
+use super::path::Place;
+use study::case::{AxisCase, AxisScale, PictureCase, shown};
 use study::record::view::{Mark, Stability, drawable};
 
 /// Why a picture could not be drawn.
@@ -41,7 +42,7 @@ impl Stroke {
     }
 
     /// Lengths of a dash and of the gap after it, as an attribute.
-    fn pattern(self) -> &'static str {
+    pub(super) fn pattern(self) -> &'static str {
         match self {
             Stroke::Solid => "",
             Stroke::Dashed => " stroke-dasharray=\"7 5\"",
@@ -57,10 +58,17 @@ pub(super) struct Line {
     pub(super) points: Vec<(f64, f64)>,
     /// Its colour.
     pub(super) color: Color,
-    /// Its width in pixels.
+    /// Its width in pixels; what is thinner than two is no curve, but helps the eye.
     pub(super) width: u32,
     /// Solid or not.
     pub(super) stroke: Stroke,
+}
+
+impl Line {
+    /// Whether it is a curve of what is unstable.
+    pub(super) fn is_unstable(&self) -> bool {
+        self.stroke != Stroke::Solid && self.width > 1
+    }
 }
 
 /// A coloured rectangle, in the units of the axes' labels.
@@ -69,6 +77,17 @@ pub(super) struct Tile {
     /// One corner.
     pub(super) from: (f64, f64),
     /// The opposite one.
+    pub(super) to: (f64, f64),
+    /// Its colour.
+    pub(super) color: Color,
+}
+
+/// The head of an arrow, in the units of the axes' labels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Arrow {
+    /// Where it comes from.
+    pub(super) from: (f64, f64),
+    /// Where its tip is.
     pub(super) to: (f64, f64),
     /// Its colour.
     pub(super) color: Color,
@@ -106,7 +125,7 @@ pub(super) enum Entry {
 }
 
 impl Entry {
-    fn label(&self) -> String {
+    pub(super) fn label(&self) -> String {
         match self {
             Entry::Line { label, .. } | Entry::Tile { label, .. } | Entry::Note { label } => {
                 label.clone()
@@ -128,252 +147,171 @@ pub(super) struct Chart {
     pub(super) x: Axis,
     /// Vertical axis.
     pub(super) y: Axis,
+    /// Coloured rectangles, below everything.
+    pub(super) tiles: Vec<Tile>,
+    /// Coloured regions, above them: their outlines.
+    pub(super) regions: Vec<(Vec<(f64, f64)>, Color)>,
     /// Lines, the first at the bottom.
     pub(super) lines: Vec<Line>,
+    /// Heads of arrows.
+    pub(super) arrows: Vec<Arrow>,
     /// Special points, on top.
     pub(super) marks: Vec<Mark>,
     /// The legend, from the top.
     pub(super) legend: Vec<Entry>,
     /// Size of the plotting area in pixels.
     pub(super) size: (u32, u32),
+    /// Whether a unit is as long on both axes.
+    pub(super) proportional: bool,
+    /// What is enlarged beside the chart.
+    pub(super) details: Sought,
 }
 
-const BOTTOM: f64 = 58.0;
-const RIGHT: f64 = 18.0;
-const TOP: f64 = 18.0;
-const TITLE: f64 = 30.0;
-const SUBTITLE: f64 = 20.0;
-const ROW: f64 = 24.0;
-/// Sizes of letters: title, axes, ticks and legend, names of special points.
-const LETTERS: [f64; 4] = [18.0, 16.0, 14.0, 13.0];
-const INK: &str = "#1e1e1e";
-
 /// The plotting area in pixels, and where numbers are in it.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
     pub(super) left: f64,
     pub(super) top: f64,
     pub(super) right: f64,
     pub(super) bottom: f64,
-    x: (f64, f64),
-    y: (f64, f64),
+    pub(super) x: (f64, f64),
+    pub(super) y: (f64, f64),
 }
 
 impl Frame {
     /// The place of a point in the units of the axes' labels.
-    fn place(&self, (x, y): (f64, f64)) -> Place {
+    pub(super) fn place(&self, (x, y): (f64, f64)) -> Place {
         let across = (x - self.x.0) / (self.x.1 - self.x.0);
         let up = (y - self.y.0) / (self.y.1 - self.y.0);
         (self.left + across * (self.right - self.left), self.bottom - up * (self.bottom - self.top))
     }
+
+    /// The point at a place.
+    pub(super) fn point(&self, (x, y): Place) -> (f64, f64) {
+        let across = (x - self.left) / (self.right - self.left);
+        let up = (self.bottom - y) / (self.bottom - self.top);
+        (self.x.0 + across * (self.x.1 - self.x.0), self.y.0 + up * (self.y.1 - self.y.0))
+    }
+
+    /// Whether a place is inside, or on the edge.
+    pub(super) fn holds(&self, (x, y): Place) -> bool {
+        let near = 0.01;
+        x >= self.left - near
+            && x <= self.right + near
+            && y >= self.top - near
+            && y <= self.bottom + near
+    }
 }
 
 impl Chart {
-    /// The chart as SVG.
-    pub(super) fn svg(&self) -> Result<String, DrawError> {
-        self.svg_over(&[])
+    /// A chart without anything on it.
+    pub(super) fn new(title: String, x: Axis, y: Axis, size: (u32, u32)) -> Chart {
+        Chart {
+            title,
+            x,
+            y,
+            tiles: Vec::new(),
+            regions: Vec::new(),
+            lines: Vec::new(),
+            arrows: Vec::new(),
+            marks: Vec::new(),
+            legend: Vec::new(),
+            size,
+            proportional: false,
+            details: Sought::Nothing,
+        }
     }
 
-    /// The chart as SVG, on top of tiles.
-    pub(super) fn svg_over(&self, tiles: &[Tile]) -> Result<String, DrawError> {
-        let frame = self.frame();
-        let rows = 20.0 + ROW * self.legend.len() as f64;
-        let heading = self.heading().into_iter().zip([LETTERS[0], LETTERS[3]]);
-        let heading = heading.map(|(line, size)| text::width(line, size)).fold(0.0, f64::max);
-        let width = (frame.right + RIGHT + self.legend_width()).max(frame.left + heading + RIGHT);
-        let height = (frame.bottom + BOTTOM).max(frame.top + rows);
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
-             viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"{FAMILY}\" fill=\"none\" \
-             stroke-linejoin=\"round\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
-        );
-        for tile in tiles {
-            let ((a, b), (c, d)) = (frame.place(tile.from), frame.place(tile.to));
-            rectangle(&mut svg, [a.min(c), b.min(d), (c - a).abs(), (d - b).abs()], tile.color);
-        }
-        self.axes(&mut svg, frame);
-        let [left, top, right, bottom] = [frame.left, frame.top, frame.right, frame.bottom];
-        let _ = writeln!(
-            svg,
-            "<clipPath id=\"frame\"><rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" \
-             height=\"{:.1}\"/></clipPath>\n<g clip-path=\"url(#frame)\">",
-            right - left,
-            bottom - top
-        );
-        for line in &self.lines {
-            let places: Vec<Place> = line.points.iter().map(|point| frame.place(*point)).collect();
-            draw_line(&mut svg, line, &places);
-        }
-        svg.push_str("</g>\n");
-        self.special_points(&mut svg, frame);
-        self.draw_legend(&mut svg, frame.right + RIGHT, frame.top + 12.0);
-        svg.push_str("</svg>\n");
-        Ok(svg)
-    }
-
-    /// Title and the line below it.
-    fn heading(&self) -> [&str; 2] {
-        let (title, more) = self.title.split_once('\n').unwrap_or((&self.title, ""));
-        [title, more]
-    }
-
-    /// The plotting area: to the right of the widest label.
-    fn frame(&self) -> Frame {
-        let labels = self.y.ticks.iter().map(|tick| text::width(&self.y.label(*tick), LETTERS[2]));
-        let left = (50.0 + labels.fold(0.0, f64::max)).ceil();
-        let [title, more] = self.heading();
-        let above = if title.is_empty() { 0.0 } else { TITLE };
-        let top = TOP + above + if more.is_empty() { 0.0 } else { SUBTITLE };
-        let (width, height) = (f64::from(self.size.0), f64::from(self.size.1));
-        let (right, bottom) = (left + width, top + height);
-        let (x, y) = ((self.x.low, self.x.high), (self.y.low, self.y.high));
-        Frame { left, top, right, bottom, x, y }
-    }
-
-    fn legend_width(&self) -> f64 {
-        let longest = self.legend.iter().map(|entry| text::width(&entry.label(), LETTERS[2]));
-        longest.fold(0.0, f64::max) + if self.legend.is_empty() { 0.0 } else { 58.0 }
-    }
-
-    /// Grid, frame, ticks, labels and titles.
-    fn axes(&self, svg: &mut String, frame: Frame) {
-        let (x, y) = (&self.x, &self.y);
-        let Frame { left, top, right, bottom, .. } = frame;
-        let ticks = Style::small().sized(LETTERS[2]);
-        let (mut grid, mut marks) = (String::new(), String::new());
-        for &tick in &x.ticks {
-            let at = frame.place((tick, y.low)).0;
-            let _ = write!(grid, "M{at:.1} {top:.1}V{bottom:.1}");
-            let _ = write!(marks, "M{at:.1} {bottom:.1}v6");
-        }
-        for &tick in &y.ticks {
-            let at = frame.place((x.low, tick)).1;
-            let _ = write!(grid, "M{left:.1} {at:.1}H{right:.1}");
-            let _ = write!(marks, "M{left:.1} {at:.1}h-6");
-        }
-        let _ = writeln!(svg, "<path d=\"{grid}\" stroke=\"{}\"/>", hex(GRID));
-        if y.has_zero() {
-            let at = frame.place((x.low, 0.0)).1;
-            let _ = writeln!(
-                svg,
-                "<path d=\"M{left:.1} {at:.1}H{right:.1}\" stroke=\"{}\"/>",
-                hex(FAINT)
-            );
-        }
-        let _ = writeln!(
-            svg,
-            "<path d=\"{marks}M{left:.1} {top:.1}H{right:.1}V{bottom:.1}H{left:.1}Z\" stroke=\"{INK}\"/>"
-        );
-        for &tick in &x.ticks {
-            let at = [frame.place((tick, y.low)).0, bottom + 21.0];
-            text::put(svg, &x.label(tick), at, &ticks.anchored("middle"));
-        }
-        for &tick in &y.ticks {
-            let at = [left - 10.0, frame.place((x.low, tick)).1 + 5.0];
-            text::put(svg, &y.label(tick), at, &ticks.anchored("end"));
-        }
-        let titles = Style::small().sized(LETTERS[1]).anchored("middle");
-        text::put(svg, &x.title, [0.5 * (left + right), bottom + BOTTOM - 12.0], &titles);
-        text::put(svg, &y.title, [22.0, 0.5 * (top + bottom)], &titles.upwards());
-        let [title, more] = self.heading();
-        let above = if more.is_empty() { 0.0 } else { SUBTITLE };
-        text::put(svg, title, [left, top - 12.0 - above], &Style::title().sized(LETTERS[0]));
-        text::put(svg, more, [left, top - 11.0], &Style::small().sized(LETTERS[3]));
-    }
-
-    /// Markers, the more important ones on top, and their names where there is room.
-    fn special_points(&self, svg: &mut String, frame: Frame) {
-        let mut marks: Vec<(&Mark, Place)> = Vec::new();
-        for mark in self.marks.iter().filter(|mark| drawable(mark.x) && drawable(mark.y)) {
-            marks.push((mark, frame.place((mark.x / self.x.unit, mark.y / self.y.unit))));
-        }
-        let lines: Vec<Vec<Place>> = self
-            .lines
-            .iter()
-            .map(|line| line.points.iter().map(|point| frame.place(*point)).collect())
-            .collect();
-        let names = Names::beside(&marks, &lines, frame, LETTERS[3]);
-        marks.sort_by_key(|(mark, _)| label::rank(&mark.kind));
-        for (mark, place) in &marks {
-            draw_marker(svg, form(&mark.kind), *place);
-        }
-        names.draw(svg);
-    }
-
-    fn draw_legend(&self, svg: &mut String, left: f64, top: f64) {
-        for (row, entry) in self.legend.iter().enumerate() {
-            let y = top + ROW * row as f64;
-            match entry {
-                Entry::Line { color, stroke, .. } => {
-                    let line =
-                        Line { points: Vec::new(), color: *color, width: 2, stroke: *stroke };
-                    draw_line(svg, &line, &[(left, y), (left + 34.0, y)]);
-                }
-                Entry::Tile { color, .. } => {
-                    rectangle(svg, [left + 6.0, y - 8.0, 22.0, 16.0], *color);
-                }
-                Entry::Marker { kind } => draw_marker(svg, form(kind), (left + 17.0, y)),
-                Entry::Note { .. } => {}
+    /// The same chart with the axes that a case asks for.
+    pub(super) fn with_axes(mut self, x: &AxisCase, y: &AxisCase) -> Chart {
+        let logarithmic = |axis: &AxisCase| match axis.scale {
+            AxisScale::Automatic => None,
+            AxisScale::Linear => Some(false),
+            AxisScale::Logarithmic => Some(true),
+        };
+        let least = |own: &Axis, pick: &dyn Fn((f64, f64)) -> f64| {
+            let values = self.lines.iter().flat_map(|line| &line.points);
+            let values = values.map(|point| own.value(pick(*point)));
+            values.filter(|value| *value > 0.0).fold(f64::INFINITY, f64::min)
+        };
+        let (lowest, leftmost) = (least(&self.y, &|p| p.1), least(&self.x, &|p| p.0));
+        let new_x = self.x.bounded((x.from, x.to), logarithmic(x), leftmost);
+        let inside = |a: f64| (new_x.low..=new_x.high).contains(&new_x.place(self.x.value(a)));
+        // a part of the horizontal axis is shown as high as what is in it
+        let (from, to) = match (x.from.or(x.to), y.from, y.to) {
+            (Some(_), None, None) => {
+                let points = self.lines.iter().filter(|line| line.width > 1);
+                let points = points.flat_map(|line| &line.points).filter(|point| inside(point.0));
+                let heights: Vec<f64> = points.map(|point| self.y.value(point.1)).collect();
+                let shown = Axis::of("", heights.iter().copied(), 7);
+                let some = !heights.is_empty() && !shown.is_like(&self.y);
+                (some.then(|| shown.value(shown.low)), some.then(|| shown.value(shown.high)))
             }
-            let style = Style::small().sized(LETTERS[2]);
-            text::put(svg, &entry.label(), [left + 44.0, y + 5.0], &style);
+            (_, from, to) => (from, to),
+        };
+        let new_y = self.y.bounded((from, to), logarithmic(y), lowest);
+        let moved =
+            |(a, b): (f64, f64)| (new_x.place(self.x.value(a)), new_y.place(self.y.value(b)));
+        let good = |(a, b): &(f64, f64)| drawable(*a) && drawable(*b);
+        let lines = std::mem::take(&mut self.lines);
+        self.lines = lines
+            .into_iter()
+            .flat_map(|line| {
+                let points: Vec<(f64, f64)> = line.points.iter().copied().map(moved).collect();
+                // what a logarithmic axis has no place for is a gap
+                let parts: Vec<Line> = points
+                    .split(|point| !good(point))
+                    .filter(|part| !part.is_empty())
+                    .map(|part| Line { points: part.to_vec(), ..line.clone() })
+                    .collect();
+                parts
+            })
+            .collect();
+        for (points, _) in &mut self.regions {
+            points.iter_mut().for_each(|point| *point = moved(*point));
         }
+        for arrow in &mut self.arrows {
+            (arrow.from, arrow.to) = (moved(arrow.from), moved(arrow.to));
+        }
+        for tile in &mut self.tiles {
+            (tile.from, tile.to) = (moved(tile.from), moved(tile.to));
+        }
+        (self.x, self.y) = (new_x, new_y);
+        // kinds of special points of which none is left
+        let (x, y) = (&self.x, &self.y);
+        let left = |kind: &str| {
+            self.marks.iter().any(|mark| {
+                let (a, b) = (x.place(mark.x), y.place(mark.y));
+                shown(&mark.kind) == kind && a >= x.low && a <= x.high && b >= y.low && b <= y.high
+            })
+        };
+        self.legend.retain(|entry| match entry {
+            Entry::Marker { kind } => left(kind),
+            _ => true,
+        });
+        self
     }
-}
 
-fn rectangle(svg: &mut String, [x, y, width, height]: [f64; 4], color: Color) {
-    let _ = writeln!(
-        svg,
-        "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{}\" \
-         shape-rendering=\"crispEdges\"/>",
-        hex(color)
-    );
-}
-
-/// A line, or a dot where a line has one point only.
-fn draw_line(svg: &mut String, line: &Line, places: &[Place]) {
-    let color = hex(line.color);
-    match places {
-        [] => {}
-        [(x, y)] => {
-            let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\" fill=\"{color}\"/>");
+    /// The chart as SVG.
+    pub(super) fn svg(&self, picture: &PictureCase) -> Result<String, DrawError> {
+        let look = Look::of(picture);
+        let mut chart = self.clone();
+        if !look.parts.unstable {
+            chart.lines.retain(|line| !line.is_unstable());
+            let solid = |entry: &Entry| !matches!(entry, Entry::Line { stroke, .. } if *stroke != Stroke::Solid);
+            chart.legend.retain(solid);
         }
-        places => {
-            let _ = writeln!(
-                svg,
-                "<path d=\"{}\" stroke=\"{color}\" stroke-width=\"{}\"{}/>",
-                path::through(places),
-                line.width,
-                line.stroke.pattern()
-            );
+        if !look.parts.marks {
+            chart.marks.clear();
+            chart.legend.retain(|entry| !matches!(entry, Entry::Marker { .. }));
         }
+        let standard = look.size == (None, None) && look.letters == 1.0;
+        if !standard && !chart.proportional {
+            let (width, height) = look.area(chart.size);
+            chart.x = chart.x.ticked(look.ticks(width, true));
+            chart.y = chart.y.ticked(look.ticks(height, false));
+        }
+        let drawing = Drawing { chart: &chart, look };
+        Ok(drawing.svg())
     }
-}
-
-/// A marker: black with a white rim, so that it stands out from its curve.
-fn draw_marker(svg: &mut String, form: Form, (x, y): Place) {
-    let (d, filled) = match form {
-        Form::Disc => ("M5 0A5 5 0 1 1-5 0A5 5 0 1 1 5 0Z", true),
-        Form::Ring => ("M5 0A5 5 0 1 1-5 0A5 5 0 1 1 5 0Z", false),
-        Form::Square => ("M-5-5H5V5H-5Z", true),
-        Form::Up => ("M0-7L6 5H-6Z", true),
-        Form::Down => ("M0 7L6-5H-6Z", true),
-        Form::Diamond => ("M0-7L6 0L0 7L-6 0Z", true),
-        Form::HollowDiamond => ("M0-7L6 0L0 7L-6 0Z", false),
-        Form::Cross => {
-            let _ = writeln!(
-                svg,
-                "<g transform=\"translate({x:.1} {y:.1})\"><path d=\"M-5-5L5 5M5-5L-5 5\" \
-                 stroke=\"#ffffff\" stroke-width=\"4\"/><path d=\"M-5-5L5 5M5-5L-5 5\" stroke=\"{INK}\" \
-                 stroke-width=\"2\"/></g>"
-            );
-            return;
-        }
-    };
-    let (fill, edge, width) = if filled { (INK, "#ffffff", 1.2) } else { ("#ffffff", INK, 1.8) };
-    let _ = writeln!(
-        svg,
-        "<path d=\"{d}\" transform=\"translate({x:.1} {y:.1})\" fill=\"{fill}\" stroke=\"{edge}\" \
-         stroke-width=\"{width}\"/>"
-    );
 }

@@ -1,35 +1,27 @@
 //! What each picture shows.
 
 use super::axis::Axis;
-use super::chart::{Chart, DrawError, Entry, Line, Stroke};
+use super::chart::{Chart, Entry, Line, Stroke};
+use super::detail::Sought;
 use super::heading::fit;
 use super::palette::{ASYMMETRIC, Color, FAINT, UNSTABLE, of_quantity, of_state};
-use study::case::shown;
+use study::case::{AxisCase, AxisScale, PictureCase, shown};
 use study::record::view::{Curve, Examined, Mark, Profile, Shape, Stability, drawable};
 
 pub(super) const FORCE: &str = "force F/√(χk_{b})";
 pub(super) const DISTANCE: &str = "plate distance z₀/R₀";
-const DEFORMATION: &str = "deformation Δ/R₀";
+pub(super) const DEFORMATION: &str = "deformation Δ/R₀";
 pub(super) const WIDE: (u32, u32) = (620, 440);
 
-/// Force against deformation.
-pub(super) fn force_deformation(title: &str, curve: &Curve) -> Result<String, DrawError> {
-    chart(title, DEFORMATION, FORCE, std::slice::from_ref(curve)).svg()
-}
-
-/// Force against plate distance.
-pub(super) fn force_distance(title: &str, curve: &Curve) -> Result<String, DrawError> {
-    chart(title, DISTANCE, FORCE, std::slice::from_ref(curve)).svg()
-}
-
 /// Components of the energy against deformation.
-pub(super) fn energies(title: &str, curves: &[Curve]) -> Result<String, DrawError> {
-    chart(title, DEFORMATION, "energy U/(χ R₀²)", curves).svg()
+pub(super) fn energies(title: &str, curves: &[Curve]) -> Chart {
+    chart(title, DEFORMATION, "energy U/(χ R₀²)", curves)
 }
 
-/// An observable against the parameter.
-pub(super) fn diagram(title: &str, x: &str, y: &str, curve: &Curve) -> Result<String, DrawError> {
-    chart(title, x, y, std::slice::from_ref(curve)).svg()
+/// A quantity along a branch, with what an eye would miss beside it.
+pub(super) fn along(title: &str, x: &str, y: &str, curve: &Curve) -> Chart {
+    let chart = chart(title, x, y, std::slice::from_ref(curve));
+    Chart { details: Sought::Hidden, ..chart }
 }
 
 /// What gives a branch of a diagram its colour.
@@ -44,12 +36,7 @@ pub(super) enum Level {
 }
 
 /// Branches of a diagram.
-pub(super) fn branches(
-    title: &str,
-    x: &str,
-    y: &str,
-    curves: &[(Level, &Curve)],
-) -> Result<String, DrawError> {
+pub(super) fn branches(title: &str, x: &str, y: &str, curves: &[(Level, &Curve)]) -> Chart {
     let all: Vec<Curve> = curves.iter().map(|(_, curve)| (*curve).clone()).collect();
     let Chart { x, y, marks, legend, .. } = chart(title, x, y, &all);
     let markers = legend.into_iter().filter(|entry| matches!(entry, Entry::Marker { .. }));
@@ -67,7 +54,7 @@ pub(super) fn branches(
         };
         let here = curves.iter().filter(|(own, _)| own == level);
         // the first branch on top
-        let drawn = here.flat_map(|(_, curve)| curve_lines(curve, color, (x.unit, y.unit)));
+        let drawn = here.flat_map(|(_, curve)| curve_lines(curve, color, (&x, &y)));
         lines.splice(0..0, drawn);
         if levels.len() > 1 {
             let label = match level {
@@ -83,21 +70,18 @@ pub(super) fn branches(
     lines.sort_by_key(|line| line.stroke != Stroke::Solid);
     entries.extend(stability_entries(&all, FAINT));
     entries.extend(markers);
-    Chart { title: fit(title), x, y, lines, marks, legend: entries, size: WIDE }.svg()
+    let details = Sought::Hidden;
+    Chart { lines, marks, legend: entries, details, ..Chart::new(fit(title), x, y, WIDE) }
 }
 
 /// Disjoining pressure against distance from the axis.
-pub(super) fn film_pressure(title: &str, profiles: &[Profile]) -> Result<String, DrawError> {
+pub(super) fn film_pressure(title: &str, profiles: &[Profile]) -> Chart {
     let titles = ["distance from the axis σ/R₀", "disjoining pressure Π δ_{A}/w₀"];
     pressure(title, titles, profiles)
 }
 
 /// The same with other axes.
-pub(super) fn pressure(
-    title: &str,
-    [x, y]: [&str; 2],
-    profiles: &[Profile],
-) -> Result<String, DrawError> {
+pub(super) fn pressure(title: &str, [x, y]: [&str; 2], profiles: &[Profile]) -> Chart {
     let x = Axis::of(x, values(profiles, |p| &p.sigma), 7);
     let y = Axis::of(y, values(profiles, |p| &p.value), 7);
     let mut lines = Vec::new();
@@ -108,15 +92,14 @@ pub(super) fn pressure(
             y: profile.value.clone(),
             ..of_one_state(profile.stability, profile.sigma.len())
         };
-        lines.extend(curve_lines(&curve, of_state(at), (x.unit, y.unit)));
+        lines.extend(curve_lines(&curve, of_state(at), (&x, &y)));
         legend.push(state_entry(at, &profile.label, profile.stability));
     }
-    let title = fit(title);
-    Chart { title, x, y, lines, marks: Vec::new(), legend, size: WIDE }.svg()
+    Chart { lines, legend, ..Chart::new(fit(title), x, y, WIDE) }
 }
 
 /// Deformed shapes: whole cross-sections between their plates, in true proportions.
-pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError> {
+pub(super) fn shapes(title: &str, shapes: &[Shape], picture: &PictureCase) -> Chart {
     let plates = shapes.iter().map(|shape| shape.plate);
     let largest = |values: &mut dyn Iterator<Item = f64>| {
         values.filter(|v| drawable(*v)).fold(0.2, |a: f64, v| a.max(v.abs()))
@@ -124,7 +107,8 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
     let wide = 1.08 * largest(&mut values(shapes, |s| &s.sigma)).max(1.0);
     let high = 1.08 * largest(&mut values(shapes, |s| &s.z).chain(plates)).max(1.0);
     // one unit is as long on both axes, as long as both fit
-    let scale = (480.0 / wide).min(1200.0 / high);
+    let most = (picture.width.unwrap_or(480) as f64, picture.height.unwrap_or(1200) as f64);
+    let scale = (most.0 / wide).min(most.1 / high);
     let (width, height) = ((wide * scale).max(120.0), (high * scale).max(120.0));
     let (wide, high) = (width / scale, height / scale);
     let x = Axis::exactly("distance from the axis σ/R₀", -wide, wide, 6);
@@ -150,7 +134,7 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
                 y: shape.z.iter().map(|z| up * z).collect(),
                 ..of_one_state(shape.stability, shape.sigma.len())
             };
-            lines.extend(curve_lines(&curve, color, units));
+            lines.extend(curve_lines(&curve, color, (&x, &y)));
         }
         let below = shape.plate_below.unwrap_or(-shape.plate);
         for plate in [shape.plate, below].into_iter().filter(|z| drawable(*z)) {
@@ -163,46 +147,56 @@ pub(super) fn shapes(title: &str, shapes: &[Shape]) -> Result<String, DrawError>
     let label = "at rest, without plates".to_string();
     legend.push(Entry::Line { color: FAINT, stroke: Stroke::Dashed, label });
     let size = (width as u32, height as u32);
-    Chart { title: fit(title), x, y, lines, marks: Vec::new(), legend, size }.svg()
+    Chart { lines, legend, proportional: true, ..Chart::new(fit(title), x, y, size) }
 }
 
 /// Several curves over one axis.
-pub(super) fn curves(title: &str, x: &str, y: &str, all: &[Curve]) -> Result<String, DrawError> {
-    chart(title, x, y, all).svg()
+pub(super) fn curves(title: &str, x: &str, y: &str, all: &[Curve]) -> Chart {
+    chart(title, x, y, all)
 }
 
-/// Curves of special points in two parameters; the second one is logarithmic where it goes over decades.
+/// Curves of special points in two parameters; the second one is logarithmic where it goes over a decade.
 /// `own` is its value in the case.
 pub(super) fn plane(
     title: &str,
-    x: &str,
-    y: &str,
+    [x, y]: [&str; 2],
     curves: &[Curve],
     own: Option<f64>,
-) -> Result<String, DrawError> {
+    picture: &PictureCase,
+) -> Chart {
     let (low, high) = values(curves, |c| &c.x)
+        .chain(own)
         .filter(|value| drawable(*value))
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-    // two powers of ten at least, or there would be one tick
-    let logarithmic = low > 0.0 && high.log10().floor() - low.log10().ceil() >= 1.0;
-    let place = |value: f64| if logarithmic { value.log10() } else { value };
-    let mut placed = curves.to_vec();
-    for curve in &mut placed {
-        curve.x.iter_mut().for_each(|value| *value = place(*value));
-        curve.marks.iter_mut().for_each(|mark| mark.x = place(mark.x));
+    // the case is shown too, where it lies beside all curves
+    let beside = Axis::of(&shown(x), [low, high].into_iter(), 7);
+    let ends = [beside.low, beside.high].map(|end| Some(beside.value(end)));
+    let mut chart = chart(title, x, y, curves);
+    let mut across = picture.x.clone();
+    if across.scale == AxisScale::Automatic && low > 0.0 && high >= 10.0 * low {
+        let to = across.to.or(Some(1.1 * high));
+        across = AxisCase { scale: AxisScale::Logarithmic, to, ..across };
     }
-    let mut chart = chart(title, x, y, &placed);
-    if logarithmic {
-        chart.x = Axis::of_logarithms(&shown(x), chart.x.low, chart.x.high);
+    if across.scale != AxisScale::Logarithmic && (across.from, across.to) == (None, None) {
+        [across.from, across.to] = ends;
+    } else if across.from.is_none() {
+        across.from = Some(0.9 * low).filter(|low| *low > 0.0);
     }
-    let own = own.map(|value| place(value) / chart.x.unit);
+    let upright = AxisCase {
+        from: picture.y.from.or(Some(chart.y.value(chart.y.low))),
+        to: picture.y.to.or(Some(chart.y.value(chart.y.high))),
+        ..picture.y.clone()
+    };
+    let upright = if upright.scale == AxisScale::Logarithmic { &picture.y } else { &upright };
+    chart = chart.with_axes(&across, upright);
+    let own = own.map(|value| chart.x.place(value));
     if let Some(at) = own.filter(|at| *at > chart.x.low && *at < chart.x.high) {
         let points = vec![(at, chart.y.low), (at, chart.y.high)];
         let (color, stroke) = (FAINT, Stroke::Dashed);
         chart.lines.insert(0, Line { points, color, width: 1, stroke });
         chart.legend.push(Entry::Line { color, stroke, label: "this case".to_owned() });
     }
-    chart.svg()
+    chart
 }
 
 /// A chart of curves along a branch, with their special points.
@@ -212,7 +206,7 @@ fn chart(title: &str, x: &str, y: &str, curves: &[Curve]) -> Chart {
     let y = Axis::of(&shown(y), values(curves, |c| &c.y).chain(marks.iter().map(|m| m.y)), 7);
     let mut lines: Vec<Line> = curves
         .iter()
-        .flat_map(|curve| curve_lines(curve, of_quantity(&curve.label), (x.unit, y.unit)))
+        .flat_map(|curve| curve_lines(curve, of_quantity(&curve.label), (&x, &y)))
         .collect();
     // what is unstable may run along what is stable
     lines.sort_by_key(|line| line.stroke != Stroke::Solid);
@@ -243,7 +237,7 @@ fn chart(title: &str, x: &str, y: &str, curves: &[Curve]) -> Chart {
         }
     }
     legend.extend(kinds.into_iter().map(|kind| Entry::Marker { kind }));
-    Chart { title: fit(title), x, y, lines, marks, legend, size: WIDE }
+    Chart { lines, marks, legend, ..Chart::new(fit(title), x, y, WIDE) }
 }
 
 /// Special points, each once: branches of a diagram share those at which they meet.
@@ -270,12 +264,12 @@ fn color_alone(stroke: Stroke, color: Color) -> Color {
 }
 
 /// The stretches of a curve as lines, in the units of the axes.
-pub(super) fn curve_lines(curve: &Curve, color: Color, units: (f64, f64)) -> Vec<Line> {
+pub(super) fn curve_lines(curve: &Curve, color: Color, (x, y): (&Axis, &Axis)) -> Vec<Line> {
     curve
         .stretches()
         .into_iter()
         .map(|stretch| Line {
-            points: stretch.points.map(|i| (curve.x[i] / units.0, curve.y[i] / units.1)).collect(),
+            points: stretch.points.map(|i| (x.place(curve.x[i]), y.place(curve.y[i]))).collect(),
             color,
             width: 2,
             stroke: Stroke::of(stretch.stability),

@@ -1,7 +1,7 @@
 //! Titles that say which shell or problem a picture shows.
 
 use study::case::{
-    Law, PhysicalCase, ProblemCase, ResolvedCase, ShellCase, Stiffness, catalogue, shown,
+    Film, Law, PhysicalCase, ProblemCase, ResolvedCase, ShellCase, Stiffness, catalogue, shown,
 };
 
 /// A title with a second line below it: law and groups of a shell, in the units in which the case gives
@@ -22,14 +22,21 @@ pub fn titled(title: &str, case: &ResolvedCase) -> String {
                     ])
                 }
             };
-            format!("{}; {numbers}", law(contact.shell))
+            let film = potential(&contact.groups.potential);
+            format!("{}; {numbers}; {film}", law(contact.shell))
         }
         ProblemCase::TwoPlates(plates) => {
             let sides = [("above", plates.plates[0]), ("below", plates.plates[1])];
             let films: String = sides
                 .into_iter()
                 .filter_map(|(side, plate)| Some((side, plate?)))
-                .map(|(side, plate)| format!(", w₀/χ {side} = {}", number(plate.adhesion)))
+                .map(|(side, plate)| {
+                    let (adhesion, film) = (number(plate.adhesion), potential(&plate.potential));
+                    format!(
+                        "; {side} w₀/χ = {adhesion}, δ_{{A}}/R₀ = {}, {film}",
+                        number(plate.film)
+                    )
+                })
                 .collect();
             let groups = listed(&[
                 ("k_{b}/(χR₀²)", plates.bending),
@@ -75,6 +82,24 @@ fn law(shell: ShellCase) -> String {
     format!("{name}, ν = {}", number(shell.poisson))
 }
 
+/// The potential of a film, with what it has beside depth and length.
+fn potential(film: &Film) -> String {
+    match film {
+        Film::FourTwo => "4-2 film".to_owned(),
+        Film::Dlvo(dlvo) => format!("DLVO film, λ/δ_{{A}} = {}", number(dlvo.debye())),
+    }
+}
+
+/// A quantity as it was written, its power of ten raised.
+fn quantity(text: &str) -> String {
+    match text.split_once(' ') {
+        Some((value, unit)) if value.contains(['e', 'E']) => value
+            .parse()
+            .map_or_else(|_| text.to_owned(), |value| format!("{} {unit}", number(value))),
+        _ => text.to_owned(),
+    }
+}
+
 /// What is zero is left out.
 fn listed(values: &[(&str, f64)]) -> String {
     let known = values.iter().filter(|(_, value)| *value != 0.0);
@@ -90,11 +115,12 @@ fn physically(physical: &PhysicalCase) -> String {
             words.push(format!("E = {}, h = {}", young.text, thickness.text));
         }
         Stiffness::Moduli { chi, bending } => {
-            words.push(format!("χ = {}, k_{{b}} = {}", chi.text, bending.text));
+            let (chi, bending) = (quantity(&chi.text), quantity(&bending.text));
+            words.push(format!("χ = {chi}, k_{{b}} = {bending}"));
         }
     }
     words.push(format!("P_{{A}} = {}", physical.pressure.text));
-    words.push(format!("w₀ = {}", physical.adhesion.text));
+    words.push(format!("w₀ = {}", quantity(&physical.adhesion.text)));
     words.push(format!("δ_{{A}} = {}", physical.film.text));
     if physical.surface_tension.si != 0.0 {
         words.push(format!("γ = {}", physical.surface_tension.text));
@@ -131,13 +157,18 @@ mod tests {
         assert_eq!(
             of("fig12", &["shell.law=skalak", "shell.poisson=0.3"]),
             "it\nSkalak's law, ν = 0.3; k_{b}/(χR₀²) = 3·10^{−5}, P_{A}R₀/χ = 3·10^{−3}, \
-             w₀/χ = 2·10^{−3}, δ_{A}/R₀ = 0.0333"
+             w₀/χ = 2·10^{−3}, δ_{A}/R₀ = 0.0333; 4-2 film"
         );
+        let dlvo = ["dimensionless.potential=dlvo", "dimensionless.debye=0.1"];
+        assert!(of("fig12", &dlvo).ends_with("; DLVO film, λ/δ_{A} = 0.1"));
+        assert!(of("polymer", &[]).contains("w₀ = 10^{−4} N/m"));
         assert!(
             of("polymer", &[]).contains("R₀ = 1.5 µm, E = 2.1 GPa, h = 25 nm, P_{A} = 101325 Pa")
         );
         assert!(of("cusp", &[]).ends_with("; lambda = 1"), "{}", of("cusp", &[]));
-        assert!(of("two-plates", &[]).contains("w₀/χ above = 2·10^{−3}"));
+        assert!(
+            of("two-plates", &[]).contains("; above w₀/χ = 2·10^{−3}, δ_{A}/R₀ = 0.0333, 4-2 film")
+        );
         assert!(of("ring-load", &[]).contains("k_{b}/(χR₀²) = 9.158·10^{−6}"));
     }
 

@@ -79,11 +79,11 @@ impl Names {
     /// as there is room.
     pub(super) fn beside(
         marks: &[(&Mark, Place)],
+        names: Vec<String>,
         lines: &[Vec<Place>],
         frame: Frame,
         size: f64,
     ) -> Names {
-        let names = labels(marks.iter().map(|(mark, _)| mark.kind.as_str()));
         if names.iter().filter(|name| !name.is_empty()).count() > MOST {
             return Names::default();
         }

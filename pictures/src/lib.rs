@@ -8,18 +8,24 @@
 
 mod axis;
 mod chart;
+mod columns;
 mod cycle;
+mod detail;
 mod draw;
+mod drawing;
 pub mod fit;
 mod heading;
 mod label;
+mod look;
 mod map;
+mod marker;
 mod orbits;
 mod page;
 mod palette;
 mod path;
 mod phase;
 mod physical;
+mod region;
 pub mod results;
 mod sheet;
 mod text;
@@ -28,15 +34,16 @@ mod text;
 mod tests;
 
 pub use chart::DrawError;
-pub use cycle::{LOOP, draw_cycle};
+pub use columns::{COLUMNS, draw_columns};
+pub use cycle::{LOOP, PHYSICAL_LOOP, draw_cycle};
 pub use heading::titled;
 pub use label::labels;
-pub use map::{MAP, draw_map};
+pub use map::{MAP, PHYSICAL_MAP, draw_map};
 pub use orbits::{ORBITS, PERIOD, draw_orbits};
 pub use page::{REPORT, cycle_report, report};
 pub use phase::{PHASE, draw_phase};
-pub use physical::{PHYSICAL, draw_physical};
-pub use sheet::{BOLD, FAMILY, FONT, Ink, Panel, PanelLine, Pen, PngError, Sheet, png};
+pub use physical::{PHYSICAL, PHYSICAL_DIAGRAM, draw_physical, draw_physical_diagram};
+pub use sheet::{BOLD, DrawingError, FAMILY, FONT, Ink, Panel, PanelLine, Pen, Sheet, pdf, png};
 pub use text::escape;
 
 use draw::Level;
@@ -62,12 +69,57 @@ pub const DIAGRAM: &str = "diagram.svg";
 /// # Errors
 /// When the drawing library fails.
 pub fn draw_diagram(case: &ResolvedCase, result: &DiagramResult) -> Result<String, DrawError> {
+    let picture = &case.picture;
+    let chart = diagram_chart(case, result, &|_| ("", 1.0));
+    chart.with_axes(&picture.x, &picture.y).svg(picture)
+}
+
+/// The chart of a diagram, in units that stand for the dimensionless ones of columns; `""` for those themselves.
+fn diagram_chart(
+    case: &ResolvedCase,
+    result: &DiagramResult,
+    convert: &dyn Fn(&str) -> (&'static str, f64),
+) -> chart::Chart {
+    let picture = &case.picture;
+    let first = result.branches.first().map(|branch| &branch.trace.table);
+    let asked = first.map(|table| columns::asked(picture, &result.parameter, table));
+    let own = columns::are_asked(picture);
+    let curves: Vec<(Level, Curve)> = result
+        .branches
+        .iter()
+        .map(|branch| match asked {
+            // of cycles there are extrema of one observable only
+            Some((x, y)) if own && branch.orbits.is_none() => {
+                let table = &branch.trace.table;
+                (level(branch), columns::curve(table, x, y, branch.curve.examined))
+            }
+            _ => (level(branch), branch.curve.clone()),
+        })
+        .filter(|(level, _)| !own || !matches!(level, Level::Cycles(_)))
+        .collect();
+    let extrema = curves.iter().any(|(level, _)| matches!(level, Level::Cycles(_)));
+    let (x, y) = match (asked, first) {
+        (Some((x, y)), Some(table)) if own => {
+            (columns::title(case, table, x), columns::title(case, table, y))
+        }
+        _ => (columns::named(case, &result.axes.0), columns::named(case, &result.axes.1)),
+    };
+    let y = if extrema { format!("{y}; of cycles maximum and minimum") } else { y };
+    let of = |column: Option<&str>, title: String| match (column, first) {
+        (Some(column), Some(table)) => match convert(table.unit(column)) {
+            ("", _) => (title, 1.0),
+            (unit, factor) => (columns::physical_title(table, column, unit), factor),
+        },
+        _ => (title, 1.0),
+    };
+    let (x, y) = (of(asked.map(|(x, _)| x), x), of(asked.map(|(_, y)| y), y));
+    let curves: Vec<(Level, Curve)> = curves
+        .into_iter()
+        .map(|(level, curve)| (level, physical::scaled(&curve, x.1, y.1)))
+        .collect();
     let curves: Vec<(Level, &Curve)> =
-        result.branches.iter().map(|branch| (level(branch), &branch.curve)).collect();
-    let (x, y) = &result.axes;
-    let extrema = result.branches.iter().any(|branch| branch.orbits.is_some());
-    let y = if extrema { format!("{y}; of cycles maximum and minimum") } else { y.clone() };
-    draw::branches(&titled(&result.title(), case), x, &y, &curves)
+        curves.iter().map(|(level, curve)| (*level, curve)).collect();
+    draw::branches(&titled(&result.title(), case), &x.0, &y.0, &curves)
 }
 
 fn level(branch: &BranchRecord) -> Level {
@@ -82,27 +134,39 @@ fn level(branch: &BranchRecord) -> Level {
 ///
 /// # Errors
 /// When the drawing library fails.
-pub fn draw_all(pictures: &Pictures) -> Result<Vec<(String, Vec<u8>)>, DrawError> {
-    let title = pictures.title.as_str();
+pub fn draw_all(
+    case: &ResolvedCase,
+    pictures: &Pictures,
+) -> Result<Vec<(String, Vec<u8>)>, DrawError> {
+    let title = titled(&pictures.title, case);
+    let look = &case.picture;
     let mut files = Vec::new();
-    let mut add = |name: &str, svg: String| files.push((name.to_string(), svg.into_bytes()));
+    let mut add = |name: &str, chart: chart::Chart| {
+        chart.svg(look).map(|svg| files.push((name.to_string(), svg.into_bytes())))
+    };
+    // axes that a case asks for are those of the columns that it names, where it names some
+    let main = |chart: chart::Chart| match columns::are_asked(look) {
+        true => chart,
+        false => chart.with_axes(&look.x, &look.y),
+    };
     if let Some(curve) = &pictures.force_deformation {
-        add(NAMES[0], draw::force_deformation(title, curve)?);
+        add(NAMES[0], draw::along(&title, draw::DEFORMATION, draw::FORCE, curve))?;
     }
     if let Some(curve) = &pictures.force_distance {
-        add(NAMES[1], draw::force_distance(title, curve)?);
+        add(NAMES[1], main(draw::along(&title, draw::DISTANCE, draw::FORCE, curve)))?;
     }
     if !pictures.shapes.is_empty() {
-        add(NAMES[2], draw::shapes(title, &pictures.shapes)?);
+        add(NAMES[2], draw::shapes(&title, &pictures.shapes, look))?;
     }
     if !pictures.film_pressure.is_empty() {
-        add(NAMES[3], draw::film_pressure(title, &pictures.film_pressure)?);
+        add(NAMES[3], draw::film_pressure(&title, &pictures.film_pressure))?;
     }
     if !pictures.energies.is_empty() {
-        add(NAMES[4], draw::energies(title, &pictures.energies)?);
+        add(NAMES[4], draw::energies(&title, &pictures.energies))?;
     }
     if let Some((x, y, curve)) = &pictures.diagram {
-        add(NAMES[5], draw::diagram(title, x, y, curve)?);
+        let (x, y) = (columns::named(case, x), columns::named(case, y));
+        add(NAMES[5], main(draw::along(&title, &x, &y, curve)))?;
     }
     Ok(files)
 }

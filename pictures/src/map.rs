@@ -1,52 +1,37 @@
-//! The picture of a map: curves of special points over the second parameter.
+//! The picture of a map: curves of special points over the second parameter, and between folds the region in
+//! which there are several states.
 
-use super::chart::DrawError;
+use super::chart::{Chart, DrawError, Entry};
+use super::columns::named;
 use super::draw::{self, DISTANCE};
 use super::heading::titled;
-use study::case::{Law, ProblemCase, ResolvedCase};
-use study::record::MapResult;
+use super::palette::SEVERAL;
+use super::region;
+use study::case::{AxisScale, Law, ProblemCase, ResolvedCase};
 use study::record::view::{Curve, Mark};
+use study::record::{Laboratory, MapResult, spoken};
 
 /// Name of the picture.
 pub const MAP: &str = "map.svg";
+/// Name of the same in physical units.
+pub const PHYSICAL_MAP: &str = "map-physical.svg";
 
-/// The map of a case as SVG: the first parameter over the second, one colour for each kind of curve.
+/// The map of a case as SVG, the first parameter over the second, one colour for each kind of curve; of a case in
+/// physical units once more in those.
 ///
 /// # Errors
 /// When the drawing library fails.
-pub fn draw_map(case: &ResolvedCase, result: &MapResult) -> Result<String, DrawError> {
-    let mut curves: Vec<Curve> = Vec::new();
-    for curve in &result.curves {
-        match curves.iter_mut().find(|known| known.label == curve.kind) {
-            Some(known) => {
-                // a gap between curves of a kind
-                known.x.push(f64::NAN);
-                known.y.push(f64::NAN);
-                known.x.extend_from_slice(&curve.second);
-                known.y.extend_from_slice(&curve.first);
-            }
-            None => curves.push(Curve {
-                label: curve.kind.clone(),
-                x: curve.second.clone(),
-                y: curve.first.clone(),
-                ..Curve::default()
-            }),
-        }
-    }
-    if let Some(last) = curves.last_mut() {
-        last.marks = result
-            .points
-            .iter()
-            .map(|point| Mark { kind: point.kind.clone(), x: point.second, y: point.first })
-            .collect();
-    }
+pub fn draw_map(
+    case: &ResolvedCase,
+    result: &MapResult,
+) -> Result<Vec<(String, Vec<u8>)>, DrawError> {
     let y = match result.parameter.as_str() {
-        "z0" => DISTANCE,
-        "alpha" => "contact angle α (degrees)",
-        other => other,
+        "z0" => DISTANCE.to_owned(),
+        "alpha" => "contact angle α (degrees)".to_owned(),
+        other => named(case, other),
     };
     let x = match result.key.as_str() {
-        _ if !matches!(result.parameter.as_str(), "z0" | "alpha") => &result.key,
+        key if !matches!(result.parameter.as_str(), "z0" | "alpha") => &named(case, key),
         "adhesion" => "adhesion w₀/χ",
         "bending" => "bending stiffness k_{b}/(χR₀²)",
         "pressure" => "ambient pressure P_{A}R₀/χ",
@@ -58,8 +43,90 @@ pub fn draw_map(case: &ResolvedCase, result: &MapResult) -> Result<String, DrawE
         "moment" => "moment at the ring m/(χR₀²)",
         other => other,
     };
-    let own = value(case, &result.key);
-    draw::plane(&titled(&result.case, case), x, y, &curves, own)
+    let svg = chart(case, result, [x, &y], (1.0, 1.0)).svg(&case.picture)?;
+    let mut files = vec![(MAP.to_owned(), svg.into_bytes())];
+    if let Some((x, y, factors)) = physical(case, result) {
+        let svg = chart(case, result, [&x, &y], factors).svg(&case.picture)?;
+        files.push((PHYSICAL_MAP.to_owned(), svg.into_bytes()));
+    }
+    Ok(files)
+}
+
+/// Titles of the axes in physical units, and what numbers must be multiplied with.
+fn physical(case: &ResolvedCase, result: &MapResult) -> Option<(String, String, (f64, f64))> {
+    let tables: Vec<_> = result.curves.iter().map(|curve| &curve.table).collect();
+    let laboratory = Laboratory::of(case, &tables)?;
+    let table = tables.first()?;
+    let words = match result.key.as_str() {
+        "adhesion" => "adhesion w₀",
+        "surface_tension" => "surface tension γ_{BW}",
+        "bending" => "bending stiffness k_{b}",
+        "pressure" => "ambient pressure P_{A}",
+        "film" => "film length δ_{A}",
+        _ => return None,
+    };
+    let (unit, x) = laboratory.convert(table.unit(&result.key))?;
+    let (length, y) = laboratory.convert("R0")?;
+    let first = format!("plate distance z₀ [{}]", spoken(length));
+    Some((format!("{words} [{}]", spoken(unit)), first, (x, y)))
+}
+
+fn chart(case: &ResolvedCase, result: &MapResult, titles: [&str; 2], (x, y): (f64, f64)) -> Chart {
+    let times = |values: &[f64], factor: f64| -> Vec<f64> {
+        values.iter().map(|value| factor * value).collect()
+    };
+    let mut curves: Vec<Curve> = Vec::new();
+    for curve in &result.curves {
+        let (second, first) = (times(&curve.second, x), times(&curve.first, y));
+        match curves.iter_mut().find(|known| known.label == curve.kind) {
+            Some(known) => {
+                // a gap between curves of a kind
+                known.x.push(f64::NAN);
+                known.y.push(f64::NAN);
+                known.x.extend(second);
+                known.y.extend(first);
+            }
+            None => {
+                let label = curve.kind.clone();
+                curves.push(Curve { label, x: second, y: first, ..Curve::default() });
+            }
+        }
+    }
+    if let Some(last) = curves.last_mut() {
+        let mark = |point: &study::record::MapPoint| Mark {
+            kind: point.kind.clone(),
+            x: x * point.second,
+            y: y * point.first,
+        };
+        last.marks = result.points.iter().map(mark).collect();
+    }
+    let mut picture = case.picture.clone();
+    for (axis, factor) in [(&mut picture.x, x), (&mut picture.y, y)] {
+        for end in [&mut axis.from, &mut axis.to] {
+            *end = end.map(|end| factor * end);
+        }
+    }
+    let own = value(case, &result.key).map(|value| x * value);
+    let heading = titled(&result.case, case);
+    let mut chart = draw::plane(&heading, titles, &curves, own, &picture);
+    // the branch comes from where its path starts, with one state
+    let folds: Vec<Vec<(f64, f64)>> = result
+        .curves
+        .iter()
+        .filter(|curve| curve.kind == "fold")
+        .map(|curve| {
+            let points = curve.second.iter().zip(&curve.first);
+            points.map(|(a, b)| (chart.x.place(x * a), chart.y.place(y * b))).collect()
+        })
+        .collect();
+    let path = [case.path.start, case.path.end].map(|end| chart.y.place(y * end));
+    let regions = region::several(&folds, (chart.x.low, chart.x.high), (path[0], path[1]));
+    if !regions.is_empty() && picture.y.scale != AxisScale::Logarithmic {
+        chart.regions = regions.into_iter().map(|outline| (outline, SEVERAL)).collect();
+        let label = "several states: hysteresis".to_owned();
+        chart.legend.push(Entry::Tile { color: SEVERAL, label });
+    }
+    chart
 }
 
 /// The value of a key in the case.
@@ -100,7 +167,10 @@ mod tests {
     fn a_map_shows_where_its_case_is() {
         let case = load("cusp".as_ref(), &[], &catalogue()).unwrap().case;
         let map = run_map(&case, "lambda", &mut |_| ControlFlow::Continue(())).unwrap();
-        let svg = draw_map(&case, &map).unwrap();
+        let files = draw_map(&case, &map).unwrap();
+        assert_eq!(files.len(), 1, "it is dimensionless");
+        let svg = String::from_utf8(files[0].1.clone()).unwrap();
+        assert!(svg.contains("hysteresis") && svg.contains(">parameter μ<"), "{svg}");
         assert!(svg.contains(">this case<") && svg.contains(">fold<"), "{svg}");
     }
 }

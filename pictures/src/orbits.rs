@@ -3,6 +3,7 @@
 
 use super::axis::Axis;
 use super::chart::{Chart, DrawError, Entry};
+use super::columns::named;
 use super::draw::{WIDE, branches, curve_lines, of_one_state, state_entry, values};
 use super::heading::titled;
 use super::palette::of_state;
@@ -26,6 +27,7 @@ pub fn draw_orbits(
     case: &ResolvedCase,
     result: &DiagramResult,
 ) -> Result<Vec<(String, Vec<u8>)>, DrawError> {
+    let look = &case.picture;
     let mut files = Vec::new();
     let with: Vec<(&BranchRecord, &OrbitsRecord)> = result
         .branches
@@ -37,19 +39,21 @@ pub fn draw_orbits(
     }
     let curves: Vec<_> =
         with.iter().map(|(branch, orbits)| (super::level(branch), &orbits.period)).collect();
-    let svg = branches(&titled(&result.title(), case), &result.parameter, "period", &curves)?;
+    let parameter = named(case, &result.parameter);
+    let svg = branches(&titled(&result.title(), case), &parameter, "period", &curves).svg(look)?;
     files.push((PERIOD.to_owned(), svg.into_bytes()));
     for (branch, orbits) in with {
         let Some(first) = orbits.names.first() else { continue };
         let title = format!("{}: branch {}", result.case, branch.id);
         let shown = some(&orbits.orbits);
         let over_time: Vec<Curve> = shown.iter().map(|orbit| curve(&orbit.t, orbit, 0)).collect();
-        let svg = cycles(&title, "t", first, &shown, &over_time)?;
+        let (x, y) = (named(case, first), orbits.names.get(1).map(|name| named(case, name)));
+        let svg = cycles(&title, ["time t", &x], &shown, &over_time).svg(look)?;
         files.push((ORBITS[0].replace('*', &branch.id.to_string()), svg.into_bytes()));
-        let Some(second) = orbits.names.get(1) else { continue };
+        let Some(y) = y else { continue };
         let plane: Vec<Curve> =
             shown.iter().map(|orbit| curve(&orbit.values[0], orbit, 1)).collect();
-        let svg = cycles(&title, first, second, &shown, &plane)?;
+        let svg = cycles(&title, [&x, &y], &shown, &plane).svg(look)?;
         files.push((ORBITS[1].replace('*', &branch.id.to_string()), svg.into_bytes()));
     }
     Ok(files)
@@ -73,19 +77,13 @@ fn stability(orbit: &OrbitRecord) -> Stability {
 }
 
 /// A chart of one curve for each cycle.
-fn cycles(
-    title: &str,
-    x: &str,
-    y: &str,
-    orbits: &[&OrbitRecord],
-    curves: &[Curve],
-) -> Result<String, DrawError> {
+fn cycles(title: &str, [x, y]: [&str; 2], orbits: &[&OrbitRecord], curves: &[Curve]) -> Chart {
     let x = Axis::of(&shown(x), values(curves, |c| &c.x), 7);
     let y = Axis::of(&shown(y), values(curves, |c| &c.y), 7);
     let mut lines = Vec::new();
     let mut legend: Vec<Entry> = Vec::new();
     for (at, (orbit, curve)) in orbits.iter().zip(curves).enumerate() {
-        lines.extend(curve_lines(curve, of_state(at), (x.unit, y.unit)));
+        lines.extend(curve_lines(curve, of_state(at), (&x, &y)));
         let label = match orbit.unstable {
             Some(_) => orbit.label.clone(),
             None => format!("{}, stability not known", orbit.label),
@@ -93,5 +91,5 @@ fn cycles(
         legend.push(state_entry(at, &label, stability(orbit)));
     }
     let title = shown(title);
-    Chart { title, x, y, lines, marks: Vec::new(), legend, size: WIDE }.svg()
+    Chart { lines, legend, ..Chart::new(title, x, y, WIDE) }
 }

@@ -23,6 +23,8 @@ const SKY: Color = Color(86, 180, 233);
 pub(super) const UNSTABLE: Color = VERMILLION;
 /// The same of what is unstable to modes without its symmetries only.
 pub(super) const ASYMMETRIC: Color = PURPLE;
+/// Behind curves, where there are several states.
+pub(super) const SEVERAL: Color = Color(253, 231, 213);
 /// Grey of grids.
 pub(super) const GRID: Color = Color(228, 228, 228);
 /// Grey of lines that carry no data: zero, axis of symmetry, the sphere at rest.

@@ -15,6 +15,16 @@ const CURVE: usize = 5;
 /// A turn at a point beyond this angle, in radians, is a corner and stays one.
 const CORNER: f64 = 1.2;
 
+/// The path through points by straight lines.
+pub(super) fn straight(points: &[Place]) -> String {
+    let mut d = String::new();
+    for (at, (x, y)) in points.iter().enumerate() {
+        let pen = if at == 0 { 'M' } else { 'L' };
+        let _ = write!(d, "{pen}{} {}", Rounded(*x), Rounded(*y));
+    }
+    d
+}
+
 /// The path through points.
 pub(super) fn through(points: &[Place]) -> String {
     let mut d = String::new();

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::chart::{Chart, DrawError, Entry, Tile};
 use super::palette;
-use study::case::shown;
+use study::case::{PictureCase, shown};
 use study::record::SweepResult;
 use study::record::phase::Class;
 use study::sweep;
@@ -15,7 +15,7 @@ pub const PHASE: &str = "phase.svg";
 ///
 /// # Errors
 /// When the sweep covers no plane, or the drawing library fails.
-pub fn draw_phase(result: &SweepResult) -> Result<String, DrawError> {
+pub fn draw_phase(result: &SweepResult, picture: &PictureCase) -> Result<String, DrawError> {
     let plan = &result.plan;
     let Some((first, second)) = plan.plane() else {
         let detail = "the sweep does not vary two keys of numbers".to_owned();
@@ -45,16 +45,9 @@ pub fn draw_phase(result: &SweepResult) -> Result<String, DrawError> {
         color: palette::of_class(class),
         label: words(class).to_owned(),
     });
-    let chart = Chart {
-        title: shown(&plan.name),
-        x,
-        y,
-        lines: Vec::new(),
-        marks: Vec::new(),
-        legend: legend.collect(),
-        size: (520, 440),
-    };
-    chart.svg_over(&tiles)
+    let chart = Chart::new(shown(&plan.name), x, y, (520, 440));
+    let chart = Chart { tiles, legend: legend.collect(), ..chart };
+    chart.with_axes(&picture.x, &picture.y).svg(picture)
 }
 
 fn words(class: Class) -> &'static str {
@@ -195,7 +188,7 @@ mod tests {
             axis("path.end", &[0.7, 0.8], false),
         ];
         let classes = [Class::Flat, Class::Buckles, Class::Hysteresis, Class::Buckles];
-        let svg = draw_phase(&result(axes.clone(), &classes)).unwrap();
+        let svg = draw_phase(&result(axes.clone(), &classes), &PictureCase::default()).unwrap();
         for part in
             ["stays flat", "buckles", "hysteresis", "bending stiffness", "path.end", "a &lt; b"]
         {
@@ -204,7 +197,8 @@ mod tests {
         assert!(!svg.contains("bypasses"));
         // vermillion: one tile and its sample
         assert_eq!(svg.matches("#d55e00").count(), 2);
-        let error = draw_phase(&result(axes[..1].to_vec(), &classes[..2])).unwrap_err();
+        let error = draw_phase(&result(axes[..1].to_vec(), &classes[..2]), &PictureCase::default())
+            .unwrap_err();
         assert!(error.to_string().contains("does not vary two keys"));
     }
 }

@@ -1,10 +1,11 @@
 //! The pictures of a shell that is given in physical units, in the units of its laboratory.
 
 use super::chart::DrawError;
+use super::columns::{are_asked, within};
 use super::draw;
 use study::case::ResolvedCase;
 use study::record::view::{Curve, Profile};
-use study::record::{PhysicalUnits, Scales, TraceResult};
+use study::record::{DiagramResult, Laboratory, Table, TraceResult, spoken};
 
 /// Names of the pictures.
 pub const PHYSICAL: [&str; 4] = [
@@ -22,31 +23,32 @@ pub fn draw_physical(
     case: &ResolvedCase,
     result: &TraceResult,
 ) -> Result<Vec<(String, Vec<u8>)>, DrawError> {
-    let Some(scales) = Scales::of(case) else { return Ok(Vec::new()) };
-    let units = PhysicalUnits::for_table(&scales, &result.table);
+    let Some(laboratory) = Laboratory::of(case, &[&result.table]) else { return Ok(Vec::new()) };
     let of = |unit: &str| {
-        let (name, factor) = units.of(&scales, unit).unwrap_or((unit, 1.0));
-        // the one letter that tables do without
-        let name =
-            if name.starts_with('u') { name.replacen('u', "µ", 1) } else { name.to_owned() };
-        (name, factor)
+        let (name, factor) = laboratory.convert(unit).unwrap_or(("", 1.0));
+        (spoken(name), factor)
     };
     let (length, force) = (of("R0"), of("sqrt(chi k_b)"));
     let (energy, film) = (of("chi R0^2"), of("w0/delta_A"));
     let pictures = &result.pictures;
-    let title = pictures.title.as_str();
+    let title = super::titled(&pictures.title, case);
+    let look = &case.picture;
     let mut files = Vec::new();
-    let mut add = |name: &str, svg: String| files.push((name.to_owned(), svg.into_bytes()));
+    let mut add = |name: &str, chart: super::chart::Chart| {
+        chart.svg(look).map(|svg| files.push((name.to_owned(), svg.into_bytes())))
+    };
     let deformation = format!("deformation Δ [{}]", length.0);
     let force_title = format!("force F [{}]", force.0);
     if let Some(curve) = &pictures.force_deformation {
         let curve = scaled(curve, length.1, force.1);
-        add(PHYSICAL[0], draw::diagram(title, &deformation, &force_title, &curve)?);
+        add(PHYSICAL[0], draw::along(&title, &deformation, &force_title, &curve))?;
     }
     if let Some(curve) = &pictures.force_distance {
         let x = format!("plate distance z₀ [{}]", length.0);
         let curve = scaled(curve, length.1, force.1);
-        add(PHYSICAL[1], draw::diagram(title, &x, &force_title, &curve)?);
+        let chart = draw::along(&title, &x, &force_title, &curve);
+        let chart = if are_asked(look) { chart } else { within(chart, look, (length.1, force.1)) };
+        add(PHYSICAL[1], chart)?;
     }
     if !pictures.film_pressure.is_empty() {
         let profile = |profile: &Profile| Profile {
@@ -59,24 +61,45 @@ pub fn draw_physical(
             format!("distance from the axis σ [{}]", length.0),
             format!("disjoining pressure Π [{}]", film.0),
         ];
-        add(PHYSICAL[2], draw::pressure(title, [&titles[0], &titles[1]], &profiles)?);
+        add(PHYSICAL[2], draw::pressure(&title, [&titles[0], &titles[1]], &profiles))?;
     }
     if !pictures.energies.is_empty() {
         let curves: Vec<Curve> =
             pictures.energies.iter().map(|curve| scaled(curve, length.1, energy.1)).collect();
-        add(
-            PHYSICAL[3],
-            draw::curves(title, &deformation, &format!("energy U [{}]", energy.0), &curves)?,
-        );
+        let energies = format!("energy U [{}]", energy.0);
+        add(PHYSICAL[3], draw::curves(&title, &deformation, &energies, &curves))?;
     }
     Ok(files)
+}
+
+/// Name of the picture of a diagram in physical units.
+pub const PHYSICAL_DIAGRAM: &str = "diagram-physical.svg";
+
+/// The same of a whole diagram.
+///
+/// # Errors
+/// When something is missing.
+pub fn draw_physical_diagram(
+    case: &ResolvedCase,
+    result: &DiagramResult,
+) -> Result<Vec<(String, Vec<u8>)>, DrawError> {
+    let tables: Vec<&Table> = result.branches.iter().map(|branch| &branch.trace.table).collect();
+    let Some(laboratory) = Laboratory::of(case, &tables) else { return Ok(Vec::new()) };
+    let convert = |unit: &str| laboratory.convert(unit).unwrap_or(("", 1.0));
+    let chart = super::diagram_chart(case, result, &convert);
+    let asked = tables.first().map(|table| {
+        let (x, y) = super::columns::asked(&case.picture, &result.parameter, table);
+        (convert(table.unit(x)).1, convert(table.unit(y)).1)
+    });
+    let svg = within(chart, &case.picture, asked.unwrap_or((1.0, 1.0))).svg(&case.picture)?;
+    Ok(vec![(PHYSICAL_DIAGRAM.to_owned(), svg.into_bytes())])
 }
 
 fn times(values: &[f64], factor: f64) -> Vec<f64> {
     values.iter().map(|value| factor * value).collect()
 }
 
-fn scaled(curve: &Curve, x: f64, y: f64) -> Curve {
+pub(super) fn scaled(curve: &Curve, x: f64, y: f64) -> Curve {
     let mut marks = curve.marks.clone();
     for mark in &mut marks {
         // as the curve's own points, to the last bit: they tell where stability changes

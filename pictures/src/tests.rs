@@ -4,6 +4,11 @@ use super::*;
 use study::record::Pictures;
 use study::record::view::{Examined, Mark, Profile, Shape, Stability};
 
+/// A case whose pictures look as usual.
+fn fig12() -> ResolvedCase {
+    study::case::load("fig12".as_ref(), &[], &[]).unwrap().case
+}
+
 /// A force curve with two folds in the distance, as strong adhesion makes them.
 fn two_folds() -> Pictures {
     let n = 400;
@@ -110,7 +115,7 @@ fn two_folds() -> Pictures {
 
 #[test]
 fn a_branch_with_two_folds_makes_all_pictures() {
-    let files = draw_all(&two_folds()).unwrap();
+    let files = draw_all(&fig12(), &two_folds()).unwrap();
     assert_eq!(files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), NAMES);
     if let Some(folder) = std::env::var_os("ARCLEN_TEST_PICTURES") {
         for (name, svg) in &files {
@@ -162,7 +167,7 @@ fn degenerate_data_are_drawn_without_complaint() {
                     diagram: Some((String::new(), String::new(), curve)),
                     states: Vec::new(),
                 };
-                for (name, svg) in draw_all(&pictures).unwrap() {
+                for (name, svg) in draw_all(&fig12(), &pictures).unwrap() {
                     let svg = String::from_utf8(svg).unwrap();
                     assert!(!svg.contains("NaN") && !svg.contains('\u{7}'), "{name}");
                     assert!(svg.contains("a &lt; b &amp;"), "{name}");
@@ -170,13 +175,14 @@ fn degenerate_data_are_drawn_without_complaint() {
             }
         }
     }
-    assert!(draw_all(&Pictures::default()).unwrap().is_empty());
+    assert!(draw_all(&fig12(), &Pictures::default()).unwrap().is_empty());
 }
 
 #[test]
 fn shapes_have_true_proportions() {
     let shape = Shape { sigma: vec![0.0, 1.0], z: vec![0.5, 0.0], plate: 0.5, ..Shape::default() };
-    let files = draw_all(&Pictures { shapes: vec![shape], ..Pictures::default() }).unwrap();
+    let files =
+        draw_all(&fig12(), &Pictures { shapes: vec![shape], ..Pictures::default() }).unwrap();
     let svg = String::from_utf8(files[0].1.clone()).unwrap();
     // the last quarter drawn before the plates: two points, half as high as wide
     let points: Vec<Vec<f64>> = svg
@@ -195,4 +201,103 @@ fn shapes_have_true_proportions() {
         .expect("the meridian is a straight line");
     let ratio = (diagonal[3] - diagonal[1]) / (diagonal[2] - diagonal[0]);
     assert!((ratio.abs() - 0.5).abs() < 2e-3, "{ratio}");
+}
+
+/// A case whose pictures look as these keys say.
+fn looking(keys: &[&str]) -> ResolvedCase {
+    let overrides: Vec<study::case::Override> =
+        keys.iter().map(|key| study::case::Override::new(format!("picture.{key}"))).collect();
+    study::case::load("fig12".as_ref(), &overrides, &[]).unwrap().case
+}
+
+fn drawn(keys: &[&str], name: &str) -> String {
+    let files = draw_all(&looking(keys), &two_folds()).unwrap();
+    let (_, svg) = files.into_iter().find(|(own, _)| own == name).unwrap();
+    String::from_utf8(svg).unwrap()
+}
+
+#[test]
+fn sizes_letters_and_parts_are_those_of_the_case() {
+    let usual = drawn(&[], NAMES[1]);
+    let plot = "width=\"620.0\" height=\"440.0\"/></clipPath>";
+    assert!(usual.contains(plot) && usual.contains("font-size=\"14\""));
+    let small = drawn(&["width=300", "height=200", "font_size=7", "line_width=1"], NAMES[1]);
+    assert!(small.contains("width=\"300.0\" height=\"200.0\"/></clipPath>"), "{small}");
+    assert!(small.contains("font-size=\"7\"") && !small.contains("font-size=\"14\""));
+    assert!(small.contains("stroke-width=\"1\"") && !small.contains("stroke-width=\"2\""));
+    for (key, there) in [
+        ("title=false", "Hooke"),
+        ("legend=false", ">pull-off (PO)<"),
+        ("grid=false", "#e4e4e4"),
+        ("marks=false", ">pull-off (PO)<"),
+        ("names=false", ">LP1<"),
+        ("unstable=false", "stroke-dasharray=\"7 5\""),
+    ] {
+        assert!(usual.contains(there), "{there}");
+        assert!(!drawn(&[key, "inset=false"], NAMES[1]).contains(there), "{key}");
+    }
+    // the shape of a shell keeps its proportions
+    let (wide, narrow) = (drawn(&[], NAMES[2]), drawn(&["width=240"], NAMES[2]));
+    assert!(wide.contains("width=\"480.0\"") && narrow.contains("width=\"240.0\""));
+}
+
+#[test]
+fn axes_of_the_main_picture_are_those_of_the_case() {
+    let keys = ["x_from=0.8", "x_to=0.9", "y_from=-1", "y_to=3"];
+    let svg = drawn(&keys, NAMES[1]);
+    assert!(svg.contains(">0.80<") && svg.contains(">0.90<") && !svg.contains(">1.0<"), "{svg}");
+    assert!(!svg.contains(">pull-off (PO)<"), "it is not in that part");
+    // others stay as they are
+    assert_eq!(drawn(&keys, NAMES[0]), drawn(&[], NAMES[0]));
+    let logarithmic = drawn(&["y_scale=logarithmic", "y_from=0.1"], NAMES[1]);
+    assert!(logarithmic.contains(">0.1<") && logarithmic.contains(">0.2<"), "{logarithmic}");
+    assert!(!logarithmic.contains("NaN"));
+}
+
+#[test]
+fn what_is_too_near_to_be_seen_is_enlarged_beside_the_chart() {
+    // a hairpin whose sides are two pixels apart
+    let n = 60;
+    let side = |k: i32| f64::from(k) / f64::from(n);
+    let (mut x, mut y): (Vec<f64>, Vec<f64>) = (0..=n).map(|k| (side(k), side(k))).unzip();
+    for k in (0..n).rev() {
+        x.push(side(k));
+        y.push(side(k) - 0.004 * (1.0 - side(k)));
+    }
+    let unstable: Vec<bool> = (0..x.len()).map(|k| k > n as usize).collect();
+    let mark = Mark { kind: "fold".into(), x: 1.0, y: 1.0 };
+    let near = Mark { kind: "fold".into(), x: 0.995, y: 0.995 };
+    let curve = Curve { x, y, unstable, marks: vec![mark, near], ..Curve::default() };
+    let pictures = Pictures { force_distance: Some(curve.clone()), ..Pictures::default() };
+    let svg = |keys: &[&str]| {
+        String::from_utf8(draw_all(&looking(keys), &pictures).unwrap()[0].1.clone()).unwrap()
+    };
+    let both = svg(&[]);
+    assert!(both.contains(">detail a<") && both.contains(">detail b<"), "{both}");
+    assert!(!svg(&["inset=false"]).contains(">detail"));
+    // sides that are far apart need none
+    let mut apart = curve;
+    for (y, unstable) in apart.y.iter_mut().zip(&apart.unstable) {
+        *y -= if *unstable { 0.3 } else { 0.0 };
+    }
+    apart.marks.truncate(1);
+    let pictures = Pictures { force_distance: Some(apart), ..Pictures::default() };
+    let files = draw_all(&looking(&[]), &pictures).unwrap();
+    assert!(!String::from_utf8_lossy(&files[0].1).contains(">detail"));
+}
+
+#[test]
+fn two_columns_are_a_picture_of_their_own() {
+    let keys =
+        ["mesh.elements=40", "path.end=1.0", "stability.scan=axisymmetric", "picture.y=volume"];
+    let keys = keys.map(study::case::Override::new);
+    let case = study::case::load("polymer".as_ref(), &keys, &[]).unwrap().case;
+    let go = &mut |_| std::ops::ControlFlow::Continue(());
+    let result = study::run::run_trace(&case, go).unwrap();
+    let files = draw_columns(&case, &result).unwrap();
+    assert_eq!(files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), COLUMNS);
+    let text = |at: usize| String::from_utf8(files[at].1.clone()).unwrap();
+    assert!(text(0).contains("volume [R") && text(0).contains("plate distance z"), "{}", text(0));
+    assert!(text(1).contains("volume [µm") && text(1).contains("[nm]"), "{}", text(1));
+    assert!(draw_columns(&fig12(), &result).unwrap().is_empty());
 }

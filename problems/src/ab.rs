@@ -43,6 +43,7 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "ab",
     summary: "AUTO's reaction A -> B in a stirred tank: two Hopf points, two folds",
     parameter: "p",
+    axes: &[("p", "Damköhler number p"), ("u", "conversion u"), ("v", "temperature v")],
     start: 0.0,
     start_allowed: Allowed::AtLeast(0.0),
     end: 0.25,

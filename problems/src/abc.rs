@@ -19,6 +19,12 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "abc",
     summary: "AUTO's reactions A -> B -> C in a stirred tank: four Hopf points",
     parameter: "p",
+    axes: &[
+        ("p", "Damköhler number p"),
+        ("u", "conversion of A, u"),
+        ("v", "concentration of B, v"),
+        ("w", "temperature w"),
+    ],
     start: 0.0,
     start_allowed: Allowed::AtLeast(0.0),
     end: 0.4,

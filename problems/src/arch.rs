@@ -192,6 +192,13 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "shallow-arch",
     summary: "a shallow arch snaps through: two folds, and two pitchforks to asymmetric shapes",
     parameter: "load",
+    axes: &[
+        ("load", "load p"),
+        ("symmetric", "amplitude of sin x"),
+        ("asymmetric", "amplitude of sin 2x"),
+        ("crown", "height of the crown"),
+        ("thrust", "thrust S"),
+    ],
     start: 0.0,
     start_allowed: Allowed::Any,
     end: 10.0,

@@ -11,6 +11,7 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "bratu",
     summary: "Bratu problem u'' + lambda exp(u) = 0 through its fold at 3.5138 to max u = 8",
     parameter: "lambda",
+    axes: &[("lambda", "strength of the reaction λ"), ("max_u", "largest u")],
     start: 0.0,
     start_allowed: Allowed::Within(0.0, 3.5),
     end: -1.0,

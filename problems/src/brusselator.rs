@@ -38,6 +38,11 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "brusselator",
     summary: "the Brusselator: stable cycles from a Hopf point",
     parameter: "B",
+    axes: &[
+        ("B", "supply of the second substance B"),
+        ("x", "concentration x"),
+        ("y", "concentration y"),
+    ],
     start: 1.0,
     start_allowed: Allowed::Any,
     end: 4.0,

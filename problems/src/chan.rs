@@ -120,6 +120,7 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "chan",
     summary: "Chan's reacting slab u'' + alpha (1 + (u + u^2/2)/(1 + beta u^2)) = 0, fold at 4.0412",
     parameter: "alpha",
+    axes: &[("alpha", "strength of the reaction α"), ("max_u", "largest u")],
     start: 0.0,
     start_allowed: Allowed::AtLeast(0.0),
     end: -1.0,

@@ -61,6 +61,12 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "co-oxidation",
     summary: "oxidation of CO on platinum: folds and Hopf points close together",
     parameter: "p",
+    axes: &[
+        ("p", "adsorption rate of CO, p"),
+        ("x", "coverage by oxygen, x"),
+        ("y", "coverage by CO, y"),
+        ("s", "coverage by the inactive species, s"),
+    ],
     start: 0.6,
     start_allowed: Allowed::Above(0.0),
     end: 2.5,

@@ -13,6 +13,7 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "cusp",
     summary: "mu + lambda x - x^3 = 0, with folds at mu = -/+ 2 (lambda/3)^(3/2)",
     parameter: "mu",
+    axes: &[("mu", "parameter μ"), ("x", "state x")],
     start: -2.0,
     start_allowed: Allowed::Any,
     end: 2.0,

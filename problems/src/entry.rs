@@ -13,6 +13,8 @@ pub struct Entry {
     pub summary: &'static str,
     /// The continued parameter.
     pub parameter: &'static str,
+    /// The parameter and the observables, by name, with what axes of pictures call them.
+    pub axes: &'static [(&'static str, &'static str)],
     /// Where the parameter starts.
     pub start: f64,
     /// Where it may start.

@@ -43,6 +43,11 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "enz",
     summary: "AUTO's enzyme in two compartments: folds and the symmetry-breaking pitchforks",
     parameter: "p",
+    axes: &[
+        ("p", "supply of substrate p"),
+        ("s1", "substrate in the first compartment, s₁"),
+        ("s2", "substrate in the second compartment, s₂"),
+    ],
     start: 0.0,
     start_allowed: Allowed::AtLeast(0.0),
     end: 40.0,

@@ -125,6 +125,13 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "euler-column",
     summary: "Euler's elastic column -u'' = lambda sin u, buckling at pi^2 up to the mesh",
     parameter: "lambda",
+    axes: &[
+        ("lambda", "load λ = PL²/(EI)"),
+        ("rotation", "rotation in the middle θ"),
+        ("shortening", "shortening over length"),
+        ("sway", "sideways displacement over length"),
+        ("norm", "norm of θ"),
+    ],
     start: 9.0,
     start_allowed: Allowed::Any,
     end: 11.0,

@@ -50,6 +50,7 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "fitzhugh-nagumo",
     summary: "FitzHugh and Nagumo's nerve: cycles between two Hopf points, a canard explosion",
     parameter: "I",
+    axes: &[("I", "current I"), ("v", "voltage v"), ("w", "recovery w")],
     start: 0.0,
     start_allowed: Allowed::Any,
     end: 2.0,

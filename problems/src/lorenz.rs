@@ -46,6 +46,12 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "lorenz",
     summary: "Lorenz's convection: unstable cycles from a Hopf point to a homoclinic orbit",
     parameter: "rho",
+    axes: &[
+        ("rho", "Rayleigh number over its critical value, ρ"),
+        ("x", "convection x"),
+        ("y", "temperature across, y"),
+        ("z", "temperature upwards, z"),
+    ],
     start: 0.0,
     start_allowed: Allowed::Any,
     end: 30.0,

@@ -136,6 +136,11 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "mittelmann",
     summary: "Laplace u - 10 (u - lambda exp(u)) = 0 on a square: a fold, double and simple points",
     parameter: "lambda",
+    axes: &[
+        ("lambda", "strength of the source λ"),
+        ("max_u", "largest u"),
+        ("mean_u", "integral of u"),
+    ],
     start: 0.0,
     start_allowed: Allowed::Within(0.0, 0.3678),
     end: 0.05,

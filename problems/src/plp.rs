@@ -47,6 +47,7 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "plp",
     summary: "AUTO's enzyme membrane with two substrates: two Hopf points",
     parameter: "p",
+    axes: &[("p", "enzyme activity p"), ("s", "first substrate s"), ("a", "second substrate a")],
     start: 0.0,
     start_allowed: Allowed::AtLeast(0.0),
     end: 10.0,

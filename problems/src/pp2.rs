@@ -17,6 +17,7 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "pp2",
     summary: "AUTO's harvested predator and prey: branch point at 0.6, then two more branches",
     parameter: "p",
+    axes: &[("p", "harvest p"), ("u", "prey u"), ("v", "predators v")],
     start: 0.0,
     start_allowed: Allowed::Any,
     end: 1.0,

@@ -64,6 +64,12 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "ppp",
     summary: "AUTO's two predators and their prey: cycles from a Hopf point of the coexistence",
     parameter: "p1",
+    axes: &[
+        ("p1", "harvest of the first predator, p₁"),
+        ("u1", "prey u₁"),
+        ("u2", "first predator u₂"),
+        ("u3", "second predator u₃"),
+    ],
     start: 0.0,
     start_allowed: Allowed::Any,
     end: 0.6,

@@ -303,6 +303,12 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "pressurised-sphere",
     summary: "a sphere under external pressure: buckling at 1.0193 and 1.0544 times 4 sqrt(bending)",
     parameter: "pressure",
+    axes: &[
+        ("pressure", "external pressure pR₀/χ"),
+        ("pole", "radial displacement of the pole over R₀"),
+        ("volume", "volume over that at rest"),
+        ("buckling", "amplitude of buckling"),
+    ],
     start: 0.0,
     start_allowed: Allowed::AtLeast(0.0),
     end: 0.136,

@@ -47,6 +47,7 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "roessler",
     summary: "Roessler's band: cycles from a Hopf point through period doublings",
     parameter: "a",
+    axes: &[("a", "parameter a"), ("x", "state x"), ("y", "state y"), ("z", "state z")],
     start: -0.1,
     start_allowed: Allowed::Any,
     end: 0.2,

@@ -199,6 +199,7 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "swift-hohenberg-snaking",
     summary: "localised patterns of the Swift-Hohenberg equation that snake through 17 folds",
     parameter: "r",
+    axes: &[("r", "driving r"), ("norm", "norm of u"), ("u_0", "u at the left end")],
     start: -0.03,
     start_allowed: Allowed::Within(-0.6, -1e-3),
     end: -1.0,

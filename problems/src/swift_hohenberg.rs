@@ -150,6 +150,7 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "swift-hohenberg",
     summary: "Swift-Hohenberg equation on an interval: the first five pitchforks of u = 0",
     parameter: "lambda",
+    axes: &[("lambda", "driving λ"), ("norm", "norm of u"), ("max_u", "largest |u|")],
     start: -0.1,
     start_allowed: Allowed::Any,
     end: 1.0,

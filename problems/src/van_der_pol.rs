@@ -37,6 +37,7 @@ pub(crate) static ENTRY: Entry = Entry {
     name: "van-der-pol",
     summary: "Van der Pol's oscillator: stable cycles from a Hopf point to relaxation",
     parameter: "mu",
+    axes: &[("mu", "damping μ"), ("u", "state u"), ("v", "velocity v")],
     start: -1.0,
     start_allowed: Allowed::Any,
     end: 5.0,

@@ -94,3 +94,25 @@ fn entries_are_told_apart_and_say_what_they_are() {
         }
     }
 }
+
+/// Name of the parameter, then of the observables.
+struct Names;
+
+impl problems::Visitor for Names {
+    type Output = Vec<String>;
+
+    fn visit<P: continuation::Problem>(self, problem: &P, setup: problems::Setup) -> Vec<String> {
+        let observables = problem.observables().iter().map(ToString::to_string);
+        std::iter::once(setup.parameter.to_owned()).chain(observables).collect()
+    }
+}
+
+#[test]
+fn axes_are_the_parameter_and_the_observables() {
+    for entry in problems::catalogue() {
+        let names = entry.visit(&entry.request(), Names).unwrap();
+        let axes: Vec<&str> = entry.axes.iter().map(|(name, _)| *name).collect();
+        assert_eq!(axes, names, "{}", entry.name);
+        assert!(entry.axes.iter().all(|(_, words)| !words.is_empty()), "{}", entry.name);
+    }
+}

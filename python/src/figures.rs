@@ -22,7 +22,8 @@ pub(crate) fn compute_figures<'py>(
     let flag = Arc::clone(&stop);
     let work = move || {
         plan.compute(&flag, &mut |_| ()).map(|computed| {
-            let files = paper::files(&computed, true).map_err(|error| error.to_string());
+            let files = paper::files(&computed, Some(&study::case::PictureCase::default()))
+                .map_err(|error| error.to_string());
             let complete = computed.early.is_empty();
             (paper::json(&computed), files, paper::summary(&computed), complete)
         })

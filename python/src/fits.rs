@@ -169,7 +169,8 @@ fn record<'py>(py: Python<'py>, outcome: &Outcome) -> PyResult<Bound<'py, PyDict
     dict.set_item("good", outcome.best.report.is_good())?;
     let written = PyDict::new(py);
     let tables = files(outcome).map_err(|error| fault(&error))?;
-    let drawn = draw_fit(outcome, Drawn::Svg).map_err(|error| fault(&error))?;
+    let drawn = draw_fit(outcome, Drawn::Svg, &study::case::PictureCase::default())
+        .map_err(|error| fault(&error))?;
     for (name, bytes) in tables.into_iter().chain(drawn) {
         written.set_item(name, String::from_utf8_lossy(&bytes))?;
     }

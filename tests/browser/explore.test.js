@@ -195,6 +195,40 @@ test("curves are pinned, and a measured one is laid over them", async () => {
   });
 });
 
+test("the potential of the film is exchanged, and its sliders with it", async () => {
+  await visit("contact", wide, async (page) => {
+    const before = await drawn(page);
+    assert.equal(await page.locator('[data-key="dimensionless.debye"]').isVisible(), false);
+    assert.match(await page.locator("#summary").textContent(), /^Hooke's law, ν = 0\.5; kb\/.*; 4-2 film$/u);
+    await page.locator('[data-key="dimensionless.potential"] select').selectOption("dlvo");
+    assert.equal(await page.locator('[data-key="dimensionless.debye"]').isVisible(), true);
+    await settled(page, "dimensionless.potential=dlvo dimensionless.debye=0.1");
+    assert.notEqual(await drawn(page), before);
+    assert.match(await page.locator("#summary").textContent(), /; DLVO film, λ\/δA = 0\.1$/u);
+    assert.equal(await page.locator("#notes").isVisible(), false);
+    assert.equal(await page.locator("#error").isVisible(), false);
+    await slider(page, "dimensionless.debye").focus();
+    await page.keyboard.press("ArrowRight");
+    const value = await box(page, "dimensionless.debye").inputValue();
+    assert.notEqual(value, "0.1");
+    await settled(page, `dimensionless.potential=dlvo dimensionless.debye=${value}`);
+    assert.match(await page.locator("#command").inputValue(), /--set dimensionless.potential=dlvo --set dimensionless.debye=/u);
+    await page.locator('[data-key="dimensionless.potential"] select').selectOption("four-two");
+    await settled(page);
+    assert.equal(await drawn(page), before);
+  });
+  await visit("physical", wide, async (page) => {
+    await page.locator('[data-key="physical.potential"] select').selectOption("dlvo");
+    for (const [key, shown] of [["hamaker", true], ["debye", true], ["double_layer", true], ["film", false], ["adhesion", false]]) {
+      assert.equal(await page.locator(`[data-key="physical.${key}"]`).isVisible(), shown, key);
+    }
+    await page.waitForFunction(() => /^rest physical.potential=dlvo physical.hamaker=/u.test(document.body.dataset.shown), null, { timeout: 60_000 });
+    assert.equal(await page.locator("#error").isVisible(), false);
+    await page.locator('[data-key="physical.potential"] select').selectOption("four-two");
+    await settled(page);
+  });
+});
+
 test("a physical case has the units of the laboratory", async () => {
   await visit("physical", wide, async (page) => {
     const titles = () => page.locator('svg[aria-label="Curves"] .title').allTextContents();

@@ -30,6 +30,7 @@ before(async () => {
   pages.diagram = report("diagram", "diagram", "enz");
   pages.long = report("long", "trace", "fig06", "--elements", "100", "--set", "path.max_step=0.00128");
   pages.cycle = report("cycle", "cycle", "fig16", "--elements", "80", "--set", "path.start=1.2", "--set", "path.end=0.9");
+  pages.physical = report("physical", "trace", "polymer", "--elements", "80", "--set", "path.end=1.0");
   pages.ring = report("ring", "trace", CASES + "ring-load.toml", "--elements", "80", "--set", "path.end=12");
   browser = await chromium.launch({ executablePath: BROWSER, args: ["--no-sandbox"] });
 });
@@ -47,7 +48,7 @@ const visit = async (which, options, run) => {
   page.on("pageerror", (error) => complaints.push(String(error)));
   const url = pathToFileURL(pages[which]).href;
   page.on("request", (request) => {
-    if (request.url() !== url && !request.url().startsWith("data:")) complaints.push(request.url());
+    if (request.url().split("#")[0] !== url && !request.url().startsWith("data:")) complaints.push(request.url());
   });
   await page.goto(url);
   await run(page);
@@ -94,6 +95,34 @@ test("arrow keys move along the curve, and the state follows", async () => {
     await page.keyboard.press("End");
     await frames(page);
     assert.equal(Number(await value(page, "z0")), 0.65);
+  });
+});
+
+test("a case in physical units is shown in those too, at the same point", async () => {
+  await visit("physical", { viewport: { width: 1280, height: 900 } }, async (page) => {
+    assert.match(await page.locator("#about").textContent(), /Hooke's law.*R₀ = 1\.5 µm.*w₀ = 10−4 N\/m/u);
+    for (let i = 0; i < 6; i += 1) {
+      await page.keyboard.press("ArrowRight");
+      await frames(page);
+    }
+    const place = await value(page, "curve");
+    assert.match(place, /point 7 of/);
+    const z0 = Number(await value(page, "z0"));
+    await page.getByRole("button", { name: "physical units" }).click();
+    await page.locator('#units button[value="physical"][aria-pressed="true"]').waitFor();
+    await frames(page);
+    assert.equal(await value(page, "curve"), place);
+    assert.ok(Math.abs(Number(await value(page, "z0 [nm]")) / (1500 * z0) - 1) < 1e-5);
+    const axes = await page.locator("figure canvas").evaluateAll((all) => all.map((one) => one.getAttribute("aria-label")));
+    assert.ok(axes.some((label) => /force F \[[pn]N\] over plate distance z₀ \[nm\]$/u.test(label)), axes.join("\n"));
+    assert.ok(axes.some((label) => /^Shape: height z \[nm\]/u.test(label)), axes.join("\n"));
+    assert.match(await page.locator("#events th").allTextContents().then((all) => all.join()), /z0 \[nm\].*force \[[pn]N\]/u);
+    await page.getByRole("button", { name: "dimensionless" }).click();
+    await page.locator('#units button[value="dimensionless"][aria-pressed="true"]').waitFor();
+    assert.equal(Number(await value(page, "z0")), z0);
+  });
+  await visit("contact", { viewport: { width: 1280, height: 900 } }, async (page) => {
+    assert.equal(await page.locator("#units").isVisible(), false);
   });
 });
 

@@ -12,16 +12,15 @@ use study::run::run_cycle;
 /// Travel a case to and fro.
 pub(super) fn cycle(arguments: &CycleArguments, listen: &Listen<'_>) -> Done {
     let CycleArguments { case: which, output, report } = arguments;
-    let case = super::loaded(which, &which.overrides(), output.quiet)?.case;
+    let case = super::loaded(which, &which.with_looks(output), output.quiet)?.case;
     let inputs = which.inputs();
     let folder = output.folder(&case.name, &results::cycle_names(), &inputs)?;
     let mut observer = Observer::new(Some(case.path), output.quiet, listen);
     let outcome = run_cycle(&case, *report, &mut |progress| observer.update(progress));
     observer.finish();
-    let mut result = outcome.map_err(|error| super::refuse(&error.advised()))?;
-    result.pictures.title = pictures::titled(&result.pictures.title, &case);
+    let result = outcome.map_err(|error| super::refuse(&error.advised()))?;
     let made = results::cycle(&case, &result, output.wanted(folder.as_ref(), *report));
     let complete = result.stopped_because.is_complete();
-    let summary = |written: Option<&std::path::Path>| cycle_summary(&result, written);
+    let summary = |written: Option<&std::path::Path>| cycle_summary(&case, &result, written);
     output.deliver(folder.as_ref(), made, &inputs, summary, complete)
 }

@@ -5,7 +5,7 @@ use crate::advice::Advised;
 use crate::arguments::{Format, OutputArguments};
 use crate::exit::Exit;
 use crate::terminal;
-use pictures::results::{Results, Wanted};
+use pictures::results::{Formats, Results, Wanted};
 use std::path::{Path, PathBuf};
 use study::store::Folder;
 
@@ -27,12 +27,13 @@ impl OutputArguments {
         names: &[&str],
         inputs: &[PathBuf],
     ) -> Result<Option<Folder>, Exit> {
-        let pixels: Vec<String> = names
+        let others: Vec<String> = names
             .iter()
-            .filter_map(|name| Some(format!("{}.png", name.strip_suffix(".svg")?)))
+            .filter_map(|name| name.strip_suffix(".svg"))
+            .flat_map(|stem| ["png", "pdf"].map(|ending| format!("{stem}.{ending}")))
             .collect();
         let names: Vec<&str> =
-            names.iter().copied().chain(pixels.iter().map(String::as_str)).collect();
+            names.iter().copied().chain(others.iter().map(String::as_str)).collect();
         let claimed = self.place(case).map(|path| Folder::claim(&path, &names, inputs));
         claimed.transpose().map_err(|error| super::refuse(&error.advised()))
     }
@@ -56,7 +57,8 @@ impl OutputArguments {
         let mut written = None;
         if let Some(folder) = folder {
             let wanted = |format| self.format.contains(&format);
-            results.choose(wanted(Format::Svg), wanted(Format::Png));
+            let [svg, png, pdf] = [Format::Svg, Format::Png, Format::Pdf].map(wanted);
+            results.choose(Formats { svg, png, pdf });
             written = results.write(folder, inputs).then(|| folder.path());
         }
         for problem in results.problems() {
@@ -102,7 +104,7 @@ mod tests {
         assert_eq!(place(&["--json"]), None);
         assert_eq!(place(&[]).unwrap(), Path::new("./arclen-out/fig12"));
         assert_eq!(place(&["--json", "--out", "x"]).unwrap(), Path::new("x"));
-        let pdf = ["arclen", "trace", "fig12", "--format", "pdf"];
-        assert!(Arguments::try_parse_from(pdf).is_err());
+        let eps = ["arclen", "trace", "fig12", "--format", "eps"];
+        assert!(Arguments::try_parse_from(eps).is_err());
     }
 }

@@ -9,6 +9,7 @@ use crate::terminal;
 use continuation::diagram::{DiagramBranch, Unfinished};
 use pictures::results;
 use std::path::Path;
+use study::case::{PictureCase, ResolvedCase};
 use study::record::diagram_summary;
 use study::run::{Keep, KeepNothing, Saved, run_diagram};
 use study::store::Checkpoint;
@@ -20,7 +21,9 @@ pub(super) fn diagram(arguments: &DiagramArguments, listen: &Listen<'_>) -> Done
     let inputs = arguments.case.inputs();
     let folder = output.folder(&case.name, &results::diagram_names(), &inputs)?;
     let refuse = |error: &dyn Advised| super::refuse(&error.advised());
-    let text = case.to_toml();
+    // another look of its pictures makes no other diagram
+    let plain = ResolvedCase { picture: PictureCase::default(), ..case.clone() };
+    let text = plain.to_toml();
     let checkpoint = folder.as_ref().map(|folder| Checkpoint::check(folder.path(), &text));
     let mut checkpoint = checkpoint.transpose().map_err(|error| refuse(&error))?;
     let saved = match &checkpoint {

@@ -15,6 +15,7 @@ pub(super) fn figure(arguments: &FigureArguments, listen: &Listen<'_>) -> Done {
     let plan = paper::numbers(&arguments.numbers)
         .and_then(|numbers| paper::plan(&numbers, &arguments.overrides()))
         .map_err(|error| super::refuse(&error))?;
+    let look = super::look(&arguments.output)?;
     let names = [JSON, "index.html", "claims.json"];
     let folder = arguments.output.folder("figures", &names, &[])?;
     let observer = Observer::new(None, arguments.output.quiet, listen);
@@ -28,7 +29,8 @@ pub(super) fn figure(arguments: &FigureArguments, listen: &Listen<'_>) -> Done {
     let mut made = Results::new(JSON, paper::json(&computed));
     if folder.is_some() {
         observer.say("drawing".to_owned());
-        made.files(paper::files(&computed, !arguments.output.no_pictures));
+        let look = Some(&look).filter(|_| !arguments.output.no_pictures);
+        made.files(paper::files(&computed, look));
     }
     observer.finish();
     let complete = computed.early.is_empty();

@@ -12,7 +12,7 @@ use identify::{Attended, LawName, Profiles};
 use pictures::results::{self, FITS_NAMES};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
-use study::case::{Override, catalogue, load};
+use study::case::{Override, PictureCase, catalogue, load};
 use study::fit::files::summary;
 use study::fit::lab::{self, Lab, Wishes};
 use study::fit::plan::{PLAN, planned};
@@ -25,8 +25,9 @@ pub(super) fn fit(arguments: &FitArguments, listen: &Listen<'_>) -> Done {
     if let Some(case) = &arguments.plan {
         return plan(arguments, case, &lab, wishes);
     }
+    let look = super::look(&arguments.output)?;
     let sources = sources(&arguments.curves, &lab);
-    let task = Task { arguments, lab: &lab, laws, wishes, profiles: &profiles };
+    let task = Task { arguments, lab: &lab, laws, wishes, profiles: &profiles, look: &look };
     match sources.as_slice() {
         [one] => single(&task, one, listen),
         several => batch(&task, several, listen),
@@ -40,6 +41,7 @@ struct Task<'a> {
     laws: Laws,
     wishes: Wishes<'a>,
     profiles: &'a Profiles,
+    look: &'a PictureCase,
 }
 
 impl Task<'_> {
@@ -112,7 +114,7 @@ fn single(task: &Task<'_>, source: &Source, listen: &Listen<'_>) -> Done {
             return output.deliver(folder.as_ref(), made, &inputs, |_| String::new(), false);
         }
     };
-    let made = results::fit(&outcome, output.wanted(folder.as_ref(), *report));
+    let made = results::fit(&outcome, task.look, output.wanted(folder.as_ref(), *report));
     let words = |written: Option<&Path>| {
         let place = written.map_or(String::new(), |p| format!("written to {}\n", p.display()));
         summary(&outcome) + &place
@@ -146,7 +148,8 @@ fn batch(task: &Task<'_>, sources: &[Source], listen: &Listen<'_>) -> Done {
     if outcomes.iter().all(|o| matches!(o, Err(Failure::Input(_)))) {
         return Err(Exit::BadInput);
     }
-    let made = results::fits(sources, &outcomes, output.wanted(folder.as_ref(), *report));
+    let made =
+        results::fits(sources, &outcomes, task.look, output.wanted(folder.as_ref(), *report));
     let good = |o: &Result<Outcome, Failure>| o.as_ref().is_ok_and(|o| o.best.report.is_good());
     let complete = outcomes.iter().all(good);
     let (fitted, total) = (outcomes.iter().filter(|o| o.is_ok()).count(), outcomes.len());

@@ -12,7 +12,7 @@ use study::run::run_map;
 /// Map a case.
 pub(super) fn map(arguments: &MapArguments, listen: &Listen<'_>) -> Done {
     let MapArguments { case: which, output, over } = arguments;
-    let case = super::loaded(which, &which.overrides(), output.quiet)?.case;
+    let case = super::loaded(which, &which.with_looks(output), output.quiet)?.case;
     let inputs = which.inputs();
     let folder = output.folder(&case.name, &results::map_names(), &inputs)?;
     let mut observer = Observer::new(Some(case.path), output.quiet, listen);

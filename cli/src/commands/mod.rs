@@ -17,11 +17,11 @@ mod trace;
 
 use crate::Listen;
 use crate::advice::Advised;
-use crate::arguments::{Arguments, CaseArguments, Command};
+use crate::arguments::{Arguments, CaseArguments, Command, OutputArguments};
 use crate::exit::Exit;
 use crate::terminal;
 use std::path::PathBuf;
-use study::case::{LoadedCase, Override, catalogue, load};
+use study::case::{LoadedCase, Override, PictureCase, catalogue, load, picture_of};
 
 /// How a command ended: `Err` where it could not go on.
 type Done = Result<Exit, Exit>;
@@ -60,6 +60,12 @@ fn loaded(
         }
     }
     Ok(loaded)
+}
+
+/// How pictures look that belong to no single case, or the exit code after saying what is wrong with it.
+fn look(output: &OutputArguments) -> Result<PictureCase, Exit> {
+    let looks: Vec<Override> = output.looks().collect();
+    picture_of(&looks).map_err(|error| refuse(&error.advised()))
 }
 
 /// Say what is wrong with what was asked for.

@@ -10,7 +10,7 @@ use crate::terminal;
 use indicatif::{ProgressBar, ProgressStyle};
 use pictures::results::{self, SWEEP_NAMES};
 use std::path::PathBuf;
-use study::case::catalogue;
+use study::case::{LoadError, Override, PictureCase, catalogue, load_text};
 use study::record::{CaseRecord, SweepResult, sweep_summary};
 use study::store::{Computed, Folder, Kept, Store, StoreError, compute, of_one_sweep};
 use study::sweep::{Plan, Shard, Sweep, load};
@@ -21,6 +21,7 @@ pub(super) fn sweep(arguments: &SweepArguments, listen: &Listen<'_>) -> Done {
     let sweep = load(&arguments.sweep, arguments.shard, &catalogue()).map_err(|e| refuse(&e))?;
     let place = format!("{}{}", sweep.plan.name, arguments.shard.suffix());
     let folder = output.folder(&place, &SWEEP_NAMES, &sweep.inputs)?;
+    let look = look(&sweep.plan, output).map_err(|error| refuse(&error))?;
     let store = folder.as_ref().map(|folder| Store::check(folder.path(), &sweep.plan));
     let store = store.transpose().map_err(|error| refuse(&error))?;
     let kept = match &store {
@@ -47,7 +48,8 @@ pub(super) fn sweep(arguments: &SweepArguments, listen: &Listen<'_>) -> Done {
     }
     let asked = sweep.cases.len();
     let result = SweepResult::new(&sweep.plan, asked, records(&run.kept), run.interrupted);
-    let done = deliver(output, folder.as_ref(), &sweep.plan, &run.kept, &result, &sweep.inputs);
+    let done =
+        deliver(output, folder.as_ref(), (&sweep.plan, &look), &run.kept, &result, &sweep.inputs);
     if run.failure.is_some() { Err(Exit::NotWritten) } else { done }
 }
 
@@ -59,6 +61,7 @@ pub(super) fn merge(arguments: &MergeArguments) -> Done {
     of_one_sweep(&stores).map_err(|error| refuse(&error))?;
     let Some((_, first)) = stores.first() else { return Err(Exit::BadInput) };
     let plan = Plan { shard: Shard::ALL, ..first.plan().clone() };
+    let look = look(&plan, &arguments.output).map_err(|error| refuse(&error))?;
     let folder = arguments.output.folder(&plan.name, &SWEEP_NAMES, &[])?;
     let mut kept: Vec<Kept> = Vec::new();
     for (_, store) in &stores {
@@ -75,7 +78,14 @@ pub(super) fn merge(arguments: &MergeArguments) -> Done {
     kept.sort_by_key(|case| case.record.case);
     kept.dedup_by_key(|case| case.record.case);
     let result = SweepResult::new(&plan, plan.count().unwrap_or(0), records(&kept), false);
-    deliver(&arguments.output, folder.as_ref(), &plan, &kept, &result, &[])
+    deliver(&arguments.output, folder.as_ref(), (&plan, &look), &kept, &result, &[])
+}
+
+/// How the phase diagram looks: as the sweep file says, and the options after it.
+fn look(plan: &Plan, output: &OutputArguments) -> Result<PictureCase, LoadError> {
+    let looks: Vec<Override> = output.looks().collect();
+    let text = plan.base.join("\n");
+    load_text(&plan.name, &plan.name, &text, &looks, &catalogue()).map(|loaded| loaded.case.picture)
 }
 
 fn records(kept: &[Kept]) -> Vec<CaseRecord> {
@@ -140,12 +150,13 @@ fn bar(quiet: bool, cases: usize, done: usize) -> Option<ProgressBar> {
 fn deliver(
     output: &OutputArguments,
     folder: Option<&Folder>,
-    plan: &Plan,
+    (plan, look): (&Plan, &PictureCase),
     kept: &[Kept],
     result: &SweepResult,
     inputs: &[PathBuf],
 ) -> Done {
-    let made = results::sweep(plan, kept, result, folder, !output.no_pictures);
+    let made =
+        results::sweep(plan, kept, result, folder, Some(look).filter(|_| !output.no_pictures));
     let summary = |written: Option<&std::path::Path>| sweep_summary(result, written);
     output.deliver(folder, made, inputs, summary, result.is_complete())
 }

@@ -12,16 +12,16 @@ use study::run::{run_trace, run_trace_reported};
 /// Trace a case.
 pub(super) fn trace(arguments: &TraceArguments, listen: &Listen<'_>) -> Done {
     let TraceArguments { case: which, output, report } = arguments;
-    let case = super::loaded(which, &which.overrides(), output.quiet)?.case;
+    let case = super::loaded(which, &which.with_looks(output), output.quiet)?.case;
     let inputs = which.inputs();
     let folder = output.folder(&case.name, &results::trace_names(), &inputs)?;
     let mut observer = Observer::new(Some(case.path), output.quiet, listen);
     let run = if *report { run_trace_reported } else { run_trace };
     let outcome = run(&case, &mut |progress| observer.update(progress));
     observer.finish();
-    let mut result = outcome.map_err(|error| super::refuse(&error.advised()))?;
-    result.pictures.title = pictures::titled(&result.pictures.title, &case);
+    let result = outcome.map_err(|error| super::refuse(&error.advised()))?;
     let made = results::trace(&case, &result, output.wanted(folder.as_ref(), *report));
     let complete = result.stopped_because.is_complete();
-    output.deliver(folder.as_ref(), made, &inputs, |written| summary(&result, written), complete)
+    let words = |written: Option<&std::path::Path>| summary(&case, &result, written);
+    output.deliver(folder.as_ref(), made, &inputs, words, complete)
 }

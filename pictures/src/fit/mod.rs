@@ -6,7 +6,8 @@ mod smooth;
 
 pub use page::fit_report;
 
-use crate::{PngError, png};
+use crate::{DrawingError, png};
+use study::case::PictureCase;
 use study::fit::Outcome;
 
 /// Names of the pictures of a fit.
@@ -30,21 +31,25 @@ pub struct PictureError {
     /// Which.
     name: &'static str,
     /// What happened.
-    error: PngError,
+    error: DrawingError,
 }
 
 /// The pictures of a fit: file name and content.
 ///
 /// # Errors
 /// When the drawing library fails.
-pub fn draw_fit(outcome: &Outcome, drawn: Drawn) -> Result<Vec<(String, Vec<u8>)>, PictureError> {
+pub fn draw_fit(
+    outcome: &Outcome,
+    drawn: Drawn,
+    look: &PictureCase,
+) -> Result<Vec<(String, Vec<u8>)>, PictureError> {
     let mut files = Vec::new();
     if drawn == Drawn::Nothing {
         return Ok(files);
     }
     let drawings = [
-        ("fit", Some(picture::fit(outcome))),
-        ("profile", picture::profiles(&outcome.best.report)),
+        ("fit", Some(picture::fit(outcome, look))),
+        ("profile", picture::profiles(&outcome.best.report, look)),
     ];
     for (name, svg) in drawings {
         let Some(svg) = svg else { continue };

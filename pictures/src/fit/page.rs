@@ -5,6 +5,7 @@ use super::picture;
 use crate::page::{STYLE, escaped as escape};
 use identify::record::{Estimate, Report};
 use std::fmt::Write as _;
+use study::case::PictureCase;
 use study::fit::Outcome;
 use study::fit::files::{fitted, interval, readable, verdict};
 
@@ -21,7 +22,7 @@ dt { color: var(--soft); font-size: .8rem; } dd { margin: 0; font-variant-numeri
 ";
 
 /// The page of a fit.
-pub fn fit_report(outcome: &Outcome) -> String {
+pub fn fit_report(outcome: &Outcome, look: &PictureCase) -> String {
     let report = &outcome.best.report;
     let name = report.curve.rsplit(['/', '\\']).next().unwrap_or_default();
     let title = escape(&format!("Fit of {name}"));
@@ -35,7 +36,7 @@ pub fn fit_report(outcome: &Outcome) -> String {
     );
     warnings(&mut page, report);
     quantities(&mut page, report);
-    let figures = [Some(picture::fit(outcome)), picture::profiles(report)];
+    let figures = [Some(picture::fit(outcome, look)), picture::profiles(report, look)];
     let names = ["Force, residuals and what is near contact", "Profile likelihood"];
     for (svg, name) in figures.into_iter().zip(names) {
         let Some(svg) = svg else { continue };

@@ -3,6 +3,7 @@
 use super::smooth;
 use crate::{Ink, Panel, PanelLine, Pen, Sheet};
 use identify::record::{Report, Row};
+use study::case::PictureCase;
 use study::fit::Outcome;
 use study::record::view::Curve;
 
@@ -10,7 +11,7 @@ use study::record::view::Curve;
 const LEVEL: f64 = 3.841_459;
 
 /// Force and residuals over the piezo's travel, in nN and nm.
-pub(super) fn fit(outcome: &Outcome) -> String {
+pub(super) fn fit(outcome: &Outcome, look: &PictureCase) -> String {
     let (report, rows) = (&outcome.best.report, &outcome.best.rows);
     let farthest = rows.iter().map(|row| row.piezo).fold(f64::NEG_INFINITY, f64::max);
     let level = |row: &Row| report.baseline.offset + report.baseline.tilt * (farthest - row.piezo);
@@ -87,7 +88,7 @@ pub(super) fn fit(outcome: &Outcome) -> String {
         1e9 * report.quality.noise,
         report.weakest_direction
     );
-    Sheet { title: name(report), subtitle, panels }.svg()
+    Sheet { title: name(report), subtitle, panels }.svg(look)
 }
 
 fn name(report: &Report) -> String {
@@ -96,7 +97,7 @@ fn name(report: &Report) -> String {
 }
 
 /// Growth of the cost over each quantity whose profile was followed.
-pub(super) fn profiles(report: &Report) -> Option<String> {
+pub(super) fn profiles(report: &Report, look: &PictureCase) -> Option<String> {
     let panels: Vec<Panel> = report
         .profiles
         .iter()
@@ -132,7 +133,7 @@ pub(super) fn profiles(report: &Report) -> Option<String> {
         })
         .collect();
     (!panels.is_empty()).then(|| {
-        Sheet { title: name(report), subtitle: "profile likelihood".to_owned(), panels }.svg()
+        Sheet { title: name(report), subtitle: "profile likelihood".to_owned(), panels }.svg(look)
     })
 }
 

@@ -12,13 +12,16 @@ pub(crate) use html::{STYLE, escaped};
 pub use report::{REPORT, cycle_report, report};
 
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Everything on the page.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 struct Report {
     /// Title of the page.
     title: String,
-    /// A line below it.
+    /// Law and groups, or what the problem is; `_{…}` and `^{…}` set small.
+    about: String,
+    /// A line below them.
     subtitle: String,
     /// What the curves are drawn over, and of; the first chart is the largest.
     charts: Vec<Chart>,
@@ -28,6 +31,20 @@ struct Report {
     selected: usize,
     /// What stands above and below the shell, for the legend.
     bounds: String,
+    /// The units of a case that is in physical ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    laboratory: Option<Units>,
+}
+
+/// Physical units: each with what dimensionless numbers are to be multiplied with.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+struct Units {
+    /// Of columns, by name.
+    columns: BTreeMap<String, (String, f64)>,
+    /// Of the shapes.
+    length: (String, f64),
+    /// Of the film's pressure.
+    film: (String, f64),
 }
 
 /// A chart of the curves.
@@ -39,6 +56,9 @@ struct Chart {
     x: (String, String),
     /// Title of the other axis.
     y: String,
+    /// Titles of both in physical units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    physical: Option<(String, String)>,
     /// Columns of the ordinate with their names. A chart of one shows all curves, a chart of several
     /// the selected curve alone.
     columns: Vec<(String, String)>,

@@ -1,8 +1,11 @@
 //! `report.html`: what a command found, as a page to look at.
 
-use super::{Chart, Curve, Mark, Report, State};
+use super::{Chart, Curve, Mark, Report, State, Units};
+use crate::columns::named;
+use crate::titled;
+use study::case::ResolvedCase;
 use study::record;
-use study::record::{ContactRow, CycleResult, EventRecord, Table, TraceResult};
+use study::record::{ContactRow, CycleResult, EventRecord, Laboratory, Table, TraceResult, spoken};
 use study::run::RING_AXES;
 
 /// Name of the file.
@@ -31,13 +34,14 @@ struct Line<'a> {
     jumps: &'a [usize],
 }
 
-/// The page for branches with their names; `subtitle` is a line below the title. Branches of the
-/// contact problem are drawn as force curves; where they have states, these are shown.
+/// The page for branches of a case with their names; `subtitle` is a line below the title. Branches of the
+/// contact problem are drawn as force curves; where they have states, these are shown. A case in physical units
+/// is shown in those too.
 ///
 /// # Errors
 /// What the writer of JSON reports; memory does not fail, so none is expected.
 pub fn report(
-    title: &str,
+    case: &ResolvedCase,
     subtitle: &str,
     branches: &[(String, &TraceResult)],
 ) -> Result<String, serde_json::Error> {
@@ -58,14 +62,14 @@ pub fn report(
         subtitle += separator;
         subtitle += "stability against axisymmetric modes only";
     }
-    page(title, &subtitle, parameter, &lines, 0)
+    page(case, &subtitle, parameter, &lines, 0)
 }
 
 /// The page for a cycle: both ways and the complete branch, of which the states are given.
 ///
 /// # Errors
 /// As [`report()`].
-pub fn cycle_report(cycle: &CycleResult) -> Result<String, serde_json::Error> {
+pub fn cycle_report(case: &ResolvedCase, cycle: &CycleResult) -> Result<String, serde_json::Error> {
     let ways = cycle.reported.ways.iter().map(|way| Line {
         label: way.label,
         table: &way.table,
@@ -82,11 +86,11 @@ pub fn cycle_report(cycle: &CycleResult) -> Result<String, serde_json::Error> {
     };
     let lines: Vec<Line<'_>> = [complete].into_iter().chain(ways).collect();
     // the complete branch lies below the path
-    page(&cycle.case, &cycle.stopped_detail, cycle.parameter, &lines, 1)
+    page(case, &cycle.stopped_detail, cycle.parameter, &lines, 1)
 }
 
 fn page(
-    title: &str,
+    case: &ResolvedCase,
     subtitle: &str,
     parameter: &str,
     lines: &[Line<'_>],
@@ -96,19 +100,64 @@ fn page(
     let charts = match kind {
         Some(Kind::Contact) => contact_charts(lines),
         Some(Kind::RingLoad) => ring_charts(),
-        Some(Kind::Other) => general_charts(parameter, lines),
+        Some(Kind::Other) => general_charts(case, parameter, lines),
         None => Vec::new(),
     };
+    let tables: Vec<&Table> = lines.iter().map(|line| line.table).collect();
+    let laboratory = Laboratory::of(case, &tables);
+    let charts = charts
+        .into_iter()
+        .map(|chart| match (&laboratory, tables.first()) {
+            (Some(laboratory), Some(table)) => physical(chart, laboratory, table),
+            _ => chart,
+        })
+        .collect();
+    let heading = titled("", case);
     let bounds = if kind == Some(Kind::RingLoad) { "planes of the rings" } else { "plates" };
     let report = Report {
-        title: title.to_owned(),
+        title: case.name.clone(),
+        about: heading.trim().to_owned(),
         subtitle: subtitle.to_owned(),
         charts,
         curves: lines.iter().map(curve).collect(),
         selected,
         bounds: bounds.to_owned(),
+        laboratory: laboratory.map(|laboratory| units(&laboratory, &tables)),
     };
     report.html()
+}
+
+/// A chart with the titles that its axes have in physical units.
+fn physical(chart: Chart, laboratory: &Laboratory, table: &Table) -> Chart {
+    let unit = |column: &str| laboratory.convert(table.unit(column)).map(|(unit, _)| spoken(unit));
+    let y = chart.columns.first().and_then(|(column, _)| unit(column));
+    let x = unit(&chart.x.0);
+    let words = |title: &str| match title.split_once('/') {
+        // what stands behind the stroke is the dimensionless unit
+        Some((words, _)) => words.to_owned(),
+        None => title.to_owned(),
+    };
+    let titles = x.zip(y).map(|(x, y)| {
+        (format!("{} [{x}]", words(&chart.x.1)), format!("{} [{y}]", words(&chart.y)))
+    });
+    Chart { physical: titles, ..chart }
+}
+
+/// The units of columns and shapes.
+fn units(laboratory: &Laboratory, tables: &[&Table]) -> Units {
+    let of = |unit: &str| {
+        let (name, factor) = laboratory.convert(unit)?;
+        Some((spoken(name), factor))
+    };
+    let columns = tables.iter().flat_map(|table| {
+        let known = table.columns().iter();
+        known.filter_map(|name| Some((name.clone(), of(table.unit(name))?))).collect::<Vec<_>>()
+    });
+    Units {
+        columns: columns.collect(),
+        length: of("R0").unwrap_or_default(),
+        film: of("w0/delta_A").unwrap_or_default(),
+    }
 }
 
 /// What a table tells of.
@@ -142,7 +191,8 @@ fn pair(name: &str, label: &str) -> (String, String) {
 }
 
 fn chart(title: &str, x: &(String, String), y: &str, columns: Vec<(String, String)>) -> Chart {
-    Chart { title: title.to_owned(), x: x.clone(), y: y.to_owned(), columns }
+    let (title, y) = (title.to_owned(), y.to_owned());
+    Chart { title, x: x.clone(), y, physical: None, columns }
 }
 
 fn force() -> Vec<(String, String)> {
@@ -184,14 +234,17 @@ fn ring_charts() -> Vec<Chart> {
 }
 
 /// Observables against the parameter.
-fn general_charts(parameter: &str, lines: &[Line<'_>]) -> Vec<Chart> {
-    let x = pair(parameter, parameter);
+fn general_charts(case: &ResolvedCase, parameter: &str, lines: &[Line<'_>]) -> Vec<Chart> {
+    let x = pair(parameter, &named(case, parameter));
     let columns = lines.first().map_or(&[][..], |line| line.table.columns());
     // the columns between the parameter and the number of unstable modes
     let observables = columns.iter().skip(2).take_while(|name| *name != "unstable");
     observables
         .take(CHARTS)
-        .map(|name| chart(&format!("{name} against {parameter}"), &x, name, vec![pair(name, name)]))
+        .map(|name| {
+            let title = format!("{name} against {parameter}");
+            chart(&title, &x, &named(case, name), vec![pair(name, name)])
+        })
         .collect()
 }
 
@@ -252,6 +305,35 @@ mod tests {
         run_trace(&case, &mut |_| ControlFlow::Continue(())).unwrap()
     }
 
+    fn case(name: &str) -> ResolvedCase {
+        load(name.as_ref(), &[], &study::case::catalogue()).unwrap().case
+    }
+
+    #[test]
+    fn a_case_in_physical_units_has_them_on_its_page() {
+        let polymer = load(
+            "polymer".as_ref(),
+            &["mesh.elements=40", "path.end=1.0", "stability.scan=axisymmetric"].map(Override::new),
+            &[],
+        );
+        let polymer = polymer.unwrap().case;
+        let result = run_trace(&polymer, &mut |_| ControlFlow::Continue(())).unwrap();
+        let page = report(&polymer, "", &[("branch".to_owned(), &result)]).unwrap();
+        let data = data(&page);
+        let (z0, factor) = (&data["laboratory"]["columns"]["z0"], 1500.0);
+        assert_eq!(z0[0], "nm");
+        assert!((z0[1].as_f64().unwrap() / factor - 1.0).abs() < 1e-12);
+        assert!(data["laboratory"]["columns"].get("unstable").is_none());
+        let titles = &data["charts"][0]["physical"];
+        assert_eq!(
+            (&titles[0], &titles[1]),
+            (&"deformation Δ [nm]".into(), &"force F [nN]".into())
+        );
+        assert!(data["about"].as_str().unwrap().contains("R₀ = 1.5 µm"));
+        let plain = report(&case("fig12"), "", &[("branch".to_owned(), &example())]).unwrap();
+        assert!(!plain.contains("\"laboratory\":"));
+    }
+
     /// The data of a page.
     fn data(page: &str) -> serde_json::Value {
         let start = page.find("id=\"data\">").unwrap() + 10;
@@ -262,7 +344,7 @@ mod tests {
     #[test]
     fn a_contact_branch_has_its_force_curves_and_its_special_points() {
         let result = TraceResult { stability: None, ..example() };
-        let data = data(&report("fig12", "why", &[("branch".to_owned(), &result)]).unwrap());
+        let data = data(&report(&case("fig12"), "why", &[("branch".to_owned(), &result)]).unwrap());
         assert_eq!((&data["title"], &data["subtitle"]), (&"fig12".into(), &"why".into()));
         let titles: Vec<_> =
             data["charts"].as_array().unwrap().iter().map(|c| &c["title"]).collect();
@@ -276,7 +358,7 @@ mod tests {
         // what was left out is said
         let stability = study::record::StabilityRecord::default();
         let result = TraceResult { stability: Some(stability), ..result };
-        let other = report("fig12", "why", &[("branch".to_owned(), &result)]).unwrap();
+        let other = report(&case("fig12"), "why", &[("branch".to_owned(), &result)]).unwrap();
         assert!(other.contains("why; stability against axisymmetric modes only"));
         let kinds = result.table.rows().iter().filter(|row| row[15] != study::record::Cell::Empty);
         assert_eq!(curve["marks"].as_array().unwrap().len(), kinds.count());

@@ -1,9 +1,12 @@
 //! Files of diagrams, and of the periodic orbits in them.
 
 use super::{CASE, Results, Wanted};
-use crate::{DIAGRAM, ORBITS, PERIOD, REPORT, draw_diagram, draw_orbits, report};
+use crate::{
+    DIAGRAM, ORBITS, PERIOD, PHYSICAL_DIAGRAM, REPORT, draw_diagram, draw_orbits,
+    draw_physical_diagram, report,
+};
 use study::case::ResolvedCase;
-use study::record::{DiagramResult, TraceResult, branch_csv, diagram_json};
+use study::record::{DiagramResult, Laboratory, Table, TraceResult, branch_csv, diagram_json};
 use study::store::Checkpoint;
 
 const BRANCHES: &str = "branch-*.csv";
@@ -11,7 +14,7 @@ const CYCLES: &str = "orbit-*.csv";
 
 /// Names of the files that a diagram may leave, with a `*` for a number, and of what it keeps on its way.
 pub fn diagram_names() -> Vec<&'static str> {
-    let own = ["diagram.json", CASE, DIAGRAM, REPORT, BRANCHES, PERIOD, CYCLES];
+    let own = ["diagram.json", CASE, DIAGRAM, PHYSICAL_DIAGRAM, REPORT, BRANCHES, PERIOD, CYCLES];
     own.into_iter().chain(ORBITS).chain(Checkpoint::NAMES).collect()
 }
 
@@ -25,7 +28,7 @@ pub fn diagram(case: &ResolvedCase, result: &DiagramResult, wanted: Option<Wante
             |id: usize| if id == 0 { "first branch".into() } else { format!("branch {id}") };
         let curves: Vec<(String, &TraceResult)> =
             result.branches.iter().map(|branch| (label(branch.id), &branch.trace)).collect();
-        made.attempt(REPORT, report(&result.case, &result.stopped_detail, &curves));
+        made.attempt(REPORT, report(case, &result.stopped_detail, &curves));
     }
     made
 }
@@ -47,8 +50,14 @@ pub fn orbits(case: &ResolvedCase, result: &DiagramResult, wanted: Option<Wanted
 /// The case, the tables of all branches, and the pictures.
 fn add_branches(made: &mut Results, case: &ResolvedCase, result: &DiagramResult, wanted: Wanted) {
     made.file(CASE, case.to_toml());
+    let tables: Vec<&Table> = result.branches.iter().map(|branch| &branch.trace.table).collect();
+    let laboratory = Laboratory::of(case, &tables);
     for branch in &result.branches {
         made.attempt(branch.csv(), branch_csv(&branch.trace.table));
+        if let Some(laboratory) = &laboratory {
+            let name = branch.csv().replace(".csv", "-physical.csv");
+            made.attempt(name, branch_csv(&laboratory.table(case, &branch.trace.table)));
+        }
         if let Some(orbits) = &branch.orbits {
             let table = orbits.table(&result.parameter);
             made.attempt(branch.orbit_csv(), branch_csv(&table));
@@ -56,6 +65,7 @@ fn add_branches(made: &mut Results, case: &ResolvedCase, result: &DiagramResult,
     }
     if wanted.pictures && result.has_curves() {
         made.attempt(DIAGRAM, draw_diagram(case, result));
+        made.files(draw_physical_diagram(case, result));
         made.files(draw_orbits(case, result));
     }
 }

@@ -5,6 +5,7 @@ use crate::REPORT;
 use crate::fit::{self as drawing, Drawn, draw_fit, fit_report};
 use serde_json::json;
 use std::collections::BTreeSet;
+use study::case::PictureCase;
 use study::fit::files::{self as tables, FIT, FitsRow, TABLES, fit_json, fits_csv};
 use study::fit::plan::{PLAN, Plan};
 use study::fit::{Failure, Outcome, Source};
@@ -21,10 +22,10 @@ pub fn fit_names() -> Vec<&'static str> {
 }
 
 /// What a fit leaves: the JSON alone unless files are wanted.
-pub fn fit(outcome: &Outcome, wanted: Option<Wanted>) -> Results {
+pub fn fit(outcome: &Outcome, look: &PictureCase, wanted: Option<Wanted>) -> Results {
     let mut made = Results::new(FIT, fit_json(outcome));
     if let Some(wanted) = wanted {
-        made.files(files(outcome, wanted, Drawn::SvgAndPng));
+        made.files(files(outcome, look, wanted, Drawn::SvgAndPng));
     }
     made
 }
@@ -44,6 +45,7 @@ pub fn plan(plan: &Plan) -> Results {
 pub fn fits(
     sources: &[Source],
     outcomes: &[Result<Outcome, Failure>],
+    look: &PictureCase,
     wanted: Option<Wanted>,
 ) -> Results {
     let (mut rows, mut listed, mut contents) = (Vec::new(), Vec::new(), Vec::new());
@@ -70,7 +72,7 @@ pub fn fits(
     made.attempt(FITS, fits_csv(&rows));
     for (name, outcome) in contents {
         let json = made.take(fit_json(outcome)).map(|text| (FIT.to_owned(), text.into_bytes()));
-        let own = made.take(files(outcome, wanted, Drawn::Svg));
+        let own = made.take(files(outcome, look, wanted, Drawn::Svg));
         if let (Some(json), Some(own)) = (json, own) {
             for (file, bytes) in std::iter::once(json).chain(own) {
                 made.file(format!("{name}/{file}"), bytes);
@@ -83,13 +85,14 @@ pub fn fits(
 /// All files of a fit but the JSON.
 fn files(
     outcome: &Outcome,
+    look: &PictureCase,
     wanted: Wanted,
     usual: Drawn,
 ) -> Result<Vec<(String, Vec<u8>)>, String> {
     let drawn = if wanted.pictures { usual } else { Drawn::Nothing };
     let tables = tables::files(outcome).map_err(|error| error.to_string())?;
-    let pictures = draw_fit(outcome, drawn).map_err(|error| error.to_string())?;
-    let report = wanted.report.then(|| (REPORT.to_owned(), fit_report(outcome).into_bytes()));
+    let pictures = draw_fit(outcome, drawn, look).map_err(|error| error.to_string())?;
+    let report = wanted.report.then(|| (REPORT.to_owned(), fit_report(outcome, look).into_bytes()));
     Ok(tables.into_iter().chain(pictures).chain(report).collect())
 }
 

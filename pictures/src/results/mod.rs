@@ -15,7 +15,7 @@ pub use fit::{FITS_NAMES, fit, fit_names, fits, no_fit, plan};
 pub use runs::{cycle, cycle_names, map, map_names, trace, trace_names};
 pub use sweep::{SWEEP_NAMES, sweep};
 
-use crate::png;
+use crate::{pdf, png};
 use std::fmt::Display;
 use std::path::PathBuf;
 use study::store::{Earlier, Files, Folder, with_files};
@@ -30,6 +30,17 @@ pub struct Wanted {
     pub pictures: bool,
     /// The page.
     pub report: bool,
+}
+
+/// The formats that are wanted of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Formats {
+    /// Lines and letters.
+    pub svg: bool,
+    /// Pixels.
+    pub png: bool,
+    /// A page.
+    pub pdf: bool,
 }
 
 /// What a run has made for its user.
@@ -93,20 +104,30 @@ impl Results {
         &self.problems
     }
 
-    /// Keeps pictures as SVG, or makes PNG of them, or both; those that have a PNG already stay as they are.
-    pub fn choose(&mut self, svg: bool, pixels: bool) {
+    /// Pictures in the formats that are wanted; those that have a PNG already keep it and their SVG.
+    pub fn choose(&mut self, formats: Formats) {
         let made = std::mem::take(&mut self.files);
         let names: Vec<String> = made.iter().map(|(name, _)| name.clone()).collect();
         for (name, bytes) in made {
-            let twin = name.strip_suffix(".svg").map(|stem| format!("{stem}.png"));
-            let Some(twin) = twin.filter(|twin| !names.contains(twin)) else {
+            let Some(stem) = name.strip_suffix(".svg").map(str::to_owned) else {
                 self.files.push((name, bytes));
                 continue;
             };
-            if pixels && let Some(png) = self.take(png(&String::from_utf8_lossy(&bytes))) {
-                self.files.push((twin, png));
+            let svg = String::from_utf8_lossy(&bytes);
+            let twin = format!("{stem}.png");
+            let kept = names.contains(&twin);
+            if formats.png
+                && !kept
+                && let Some(pixels) = self.take(png(&svg))
+            {
+                self.files.push((twin, pixels));
             }
-            if svg {
+            if formats.pdf
+                && let Some(page) = self.take(pdf(&svg))
+            {
+                self.files.push((format!("{stem}.pdf"), page));
+            }
+            if formats.svg || kept {
                 self.files.push((name, bytes));
             }
         }

@@ -3,6 +3,7 @@
 use super::Results;
 use crate::{PHASE, draw_phase};
 use std::io;
+use study::case::PictureCase;
 use study::record::{SweepResult, sweep_json};
 use study::store::{Folder, Kept, phase_csv, write_curves, write_events};
 use study::sweep::Plan;
@@ -16,13 +17,14 @@ const CLASSES: &str = "phase.csv";
 pub const SWEEP_NAMES: [&str; 7] =
     [JSON, CURVES, EVENTS, CLASSES, PHASE, "cases/plan.json", "cases/case-*.cbor"];
 
-/// What a sweep leaves: the JSON alone without a folder. Its long tables are written at once.
+/// What a sweep leaves: the JSON alone without a folder. Its long tables are written at once; pictures need a
+/// look.
 pub fn sweep(
     plan: &Plan,
     kept: &[Kept],
     result: &SweepResult,
     folder: Option<&Folder>,
-    pictures: bool,
+    look: Option<&PictureCase>,
 ) -> Results {
     let mut made = Results::new(JSON, sweep_json(result));
     let Some(folder) = folder else { return made };
@@ -34,8 +36,8 @@ pub fn sweep(
     let phases = kept.iter().any(|case| case.record.phase.is_some());
     if phases && plan.plane().is_some() {
         made.attempt(CLASSES, phase_csv(plan, kept));
-        if pictures {
-            made.attempt(PHASE, draw_phase(result));
+        if let Some(look) = look {
+            made.attempt(PHASE, draw_phase(result, look));
         }
     }
     made

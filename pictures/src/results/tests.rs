@@ -49,17 +49,20 @@ fn a_finished_trace_leaves_all_its_files() {
 fn pictures_have_the_formats_that_are_wanted() {
     let place = tempfile::tempdir().unwrap();
     let example = example();
-    for (svg, png) in [(true, false), (false, true), (true, true)] {
+    for (svg, png, pdf) in [(true, false, false), (false, true, false), (true, true, true)] {
         let path = place.path().join(format!("{svg}-{png}"));
         let mut made = made(&example, true);
-        made.choose(svg, png);
+        made.choose(Formats { svg, png, pdf });
         assert!(made.write(&Folder::check(&path, &[]).unwrap(), &[]));
         let names = names(&path);
-        let there = ["shapes.svg", "shapes.png"].map(|name| names.contains(&name.to_owned()));
-        assert_eq!(there, [svg, png], "{names:?}");
+        let there =
+            ["shapes.svg", "shapes.png", "shapes.pdf"].map(|name| names.contains(&name.to_owned()));
+        assert_eq!(there, [svg, png, pdf], "{names:?}");
     }
     let png = fs::read(place.path().join("false-true/shapes.png")).unwrap();
     assert_eq!(&png[1..4], b"PNG");
+    let pdf = fs::read(place.path().join("true-true/shapes.pdf")).unwrap();
+    assert_eq!(&pdf[..5], b"%PDF-");
 }
 
 #[test]

@@ -1,17 +1,21 @@
-//! A figure of several panels as SVG, and the same as PNG.
+//! A figure of several panels as SVG, and the same as PNG and PDF.
 //!
 //! Panels stand in two columns, each with its legend beside it, so that no legend covers a curve.
 //! Lines are cut at the frame; data are solid where stable and dashed where not, laws are dotted.
 
 mod panel;
+mod pdf;
 mod png;
 
-pub use png::{PngError, png};
+pub use pdf::pdf;
+pub use png::{DrawingError, png};
 
+use super::look::Look;
 use super::palette::{Color, of_quantity, of_state};
 use super::text;
 use panel::Layout;
 use std::fmt::Write;
+use study::case::PictureCase;
 use study::record::view::Curve;
 
 /// The regular face of the shipped font.
@@ -108,33 +112,57 @@ pub struct Sheet {
     pub panels: Vec<Panel>,
 }
 
+/// Panels side by side.
+const COLUMNS: usize = 2;
 const MARGIN: f64 = 16.0;
 const HEAD: f64 = 64.0;
 
 impl Sheet {
     /// The figure as SVG.
-    pub fn svg(&self) -> String {
-        self.drawing(&self.title, &self.subtitle)
+    pub fn svg(&self, picture: &PictureCase) -> String {
+        match picture.parts.title {
+            true => self.drawing(&self.title, &self.subtitle, Look::of(picture)),
+            false => self.drawing("", "", Look::of(picture)),
+        }
     }
 
-    /// The panels alone, for a page that has the title.
-    pub fn untitled(&self) -> String {
-        self.drawing("", "")
+    /// Each panel alone, for a page that has the title and as many columns as fit.
+    pub fn parts(&self, picture: &PictureCase) -> Vec<String> {
+        let layouts = self.layouts(Look::of(picture));
+        // all are equally wide, so that a page scales them alike
+        let width = layouts.iter().map(|layout| layout.width).fold(0.0, f64::max);
+        let alone = |layout: &Layout<'_>| {
+            let mut body = String::new();
+            layout.draw(&mut body, MARGIN, MARGIN);
+            page([width + 2.0 * MARGIN, layout.height + 2.0 * MARGIN], &body)
+        };
+        layouts.iter().map(alone).collect()
     }
 
-    fn drawing(&self, title: &str, subtitle: &str) -> String {
-        let layouts: Vec<Layout> =
-            self.panels.iter().enumerate().map(|(i, p)| Layout::of(p, i)).collect();
-        let columns = if layouts.len() > 1 { 2 } else { 1 };
+    /// The panels with their sizes; those of a row are equally high.
+    fn layouts(&self, look: Look) -> Vec<Layout<'_>> {
+        let mut layouts: Vec<Layout<'_>> =
+            self.panels.iter().enumerate().map(|(i, p)| Layout::of(p, i, look)).collect();
+        for row in layouts.chunks_mut(COLUMNS) {
+            let height = row.iter().map(|layout| layout.plot[1]).fold(0.0, f64::max);
+            row.iter_mut().for_each(|layout| layout.heighten(height));
+        }
+        layouts
+    }
+
+    fn drawing(&self, title: &str, subtitle: &str, look: Look) -> String {
+        let layouts = self.layouts(look);
+        let columns = layouts.len().clamp(1, COLUMNS);
         let mut widths = vec![0.0_f64; columns];
         for (i, layout) in layouts.iter().enumerate() {
             widths[i % columns] = widths[i % columns].max(layout.width);
         }
-        let header = text::width(title, 20.0).max(text::width(subtitle, 13.0));
+        let header =
+            text::width(title, 20.0 * look.letters).max(text::width(subtitle, 13.0 * look.letters));
         let width = (widths.iter().sum::<f64>() + MARGIN * (columns as f64 + 1.0))
             .max(header + 2.0 * MARGIN);
         let mut body = String::new();
-        let mut top = if title.is_empty() { MARGIN } else { HEAD };
+        let mut top = if title.is_empty() { MARGIN } else { 8.0 + (HEAD - 8.0) * look.letters };
         for row in layouts.chunks(columns) {
             let mut left = MARGIN;
             for (layout, column) in row.iter().zip(&widths) {
@@ -144,18 +172,25 @@ impl Sheet {
             top += row.iter().fold(0.0_f64, |h, layout| h.max(layout.height)) + MARGIN;
         }
         let mut svg = String::new();
-        let _ = write!(
-            svg,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{top:.0}\" \
-             viewBox=\"0 0 {width:.0} {top:.0}\" font-family=\"{FAMILY}\" stroke-linejoin=\"round\" \
-             fill=\"none\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
-        );
-        text::put(&mut svg, title, [MARGIN, 28.0], &text::Style::title());
-        text::put(&mut svg, subtitle, [MARGIN, 50.0], &text::Style::small());
+        let style = text::Style::title().sized(20.0 * look.letters);
+        text::put(&mut svg, title, [MARGIN, 8.0 + 20.0 * look.letters], &style);
+        let style = text::Style::small().sized(13.0 * look.letters);
+        text::put(&mut svg, subtitle, [MARGIN, 8.0 + 42.0 * look.letters], &style);
         svg.push_str(&body);
-        svg.push_str("</svg>\n");
-        svg
+        page([width, top], &svg)
     }
+}
+
+/// A drawing of a size with what is on it.
+fn page([width, height]: [f64; 2], body: &str) -> String {
+    let mut svg = String::new();
+    let _ = write!(
+        svg,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
+         viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"{FAMILY}\" stroke-linejoin=\"round\" \
+         fill=\"none\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{body}</svg>\n"
+    );
+    svg
 }
 
 #[cfg(test)]
@@ -188,7 +223,7 @@ mod tests {
 
     #[test]
     fn svg_is_well_formed_and_lines_are_cut_at_the_frame() {
-        let svg = sheet().svg();
+        let svg = sheet().svg(&PictureCase::default());
         assert_eq!(svg.matches("<clipPath").count(), 2);
         assert!(svg.contains("stroke-dasharray") && svg.contains("&lt; 3 &amp; more"));
         assert!(resvg::usvg::Tree::from_str(&svg, &resvg::usvg::Options::default()).is_ok());
@@ -196,10 +231,10 @@ mod tests {
 
     #[test]
     fn png_has_ink_of_text_without_any_font_of_the_machine() {
-        let with = png(&sheet().svg()).unwrap();
+        let with = png(&sheet().svg(&PictureCase::default())).unwrap();
         let mut bare = sheet();
         bare.title = String::new();
-        let without = png(&bare.svg()).unwrap();
+        let without = png(&bare.svg(&PictureCase::default())).unwrap();
         assert_eq!(&with[1..4], b"PNG");
         assert!(with != without);
     }

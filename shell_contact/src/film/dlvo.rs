@@ -183,6 +183,17 @@ impl SurfaceForces {
         self.hamaker / (6.0 * PI * self.double_layer * self.debye * self.debye)
     }
 
+    /// What makes a well of this height and depth, with the Debye length `debye` in the units of the height.
+    pub fn of_well(length: f64, depth: f64, debye: f64) -> SurfaceForces {
+        let ratio = debye / length;
+        let scale = depth / (1.0 - 2.0 * ratio);
+        SurfaceForces {
+            hamaker: 12.0 * PI * scale * length * length,
+            double_layer: 2.0 * ratio * (1.0 / ratio).exp() * scale,
+            debye,
+        }
+    }
+
     /// Height `δ_A` of the secondary minimum and its depth `W0`; `None` without one.
     pub fn well(&self) -> Option<(f64, f64)> {
         let q = self.attraction();
@@ -270,6 +281,9 @@ mod tests {
                 - forces.hamaker / (12.0 * PI * h * h);
             close(film.energy(h, depth, length), direct, 1e-11, 1e-12 * depth);
         }
+        let again = SurfaceForces::of_well(length, depth, forces.debye);
+        close(again.hamaker, forces.hamaker, 1e-12, 0.0);
+        close(again.double_layer, forces.double_layer, 1e-11, 0.0);
         let strong = SurfaceForces { hamaker: 1.35 * 6.0 * PI * 2e-3 * 25e-18, ..forces };
         assert!(strong.attraction() > SurfaceForces::MOST && strong.well().is_none());
         let barely = SurfaceForces { hamaker: 1.344 * 6.0 * PI * 2e-3 * 25e-18, ..forces };

@@ -13,6 +13,11 @@ fn entry(entry: &Entry) -> CatalogueEntry {
         name: entry.name.to_owned(),
         summary: entry.summary.to_owned(),
         parameter: entry.parameter.to_owned(),
+        axes: entry
+            .axes
+            .iter()
+            .map(|(name, words)| ((*name).to_owned(), (*words).to_owned()))
+            .collect(),
         start: entry.start,
         end: entry.end,
         start_allowed: entry.start_allowed,

@@ -2,12 +2,17 @@
 //!
 //! All that a case knows of potentials is here; the physics is in [`shell_contact::film`].
 
+use super::PhysicalCase;
+use super::document::Origin;
 use super::error::Complaint;
 use super::keys::{self, Absent, Key, Kind, POSITIVE, Range, key, number, quantity};
 use super::reader::Section;
 use super::resolve::Resolver;
 use crate::units::{Dimension, Quantity};
 use shell_contact::film::{Dlvo, Film, SurfaceForces, double_layer_of_surface_potential};
+
+/// What notes say of keys that an override of the potential makes useless.
+pub const PASSED_OVER: &str = "is passed over";
 
 /// A potential, and the keys that no other has.
 struct Choice {
@@ -127,7 +132,8 @@ impl Resolver<'_> {
         Some(PhysicalFilm { adhesion: adhesion?, film: film?, potential, forces })
     }
 
-    /// The potential that a table asks for; complains about keys of others in it.
+    /// The potential that a table asks for; complains about keys of others in it. What a file says for its own
+    /// potential is passed over where an override asks for another.
     fn choice(
         &self,
         section: Section<'_>,
@@ -138,10 +144,19 @@ impl Resolver<'_> {
             Some(_) => self.word(section, &POTENTIAL)?,
         };
         let choice = CHOICES.into_iter().find(|choice| choice.name == name)?;
+        let given = |origin: Origin| matches!(origin, Origin::Given(_));
+        let replaced = section.get(POTENTIAL.name).is_some_and(|node| given(node.origin));
         let mut good = true;
         for other in CHOICES.into_iter().filter(|other| other.name != name) {
             for key in own(other) {
                 let Some(node) = section.get(key.name) else { continue };
+                if replaced && !given(node.origin) {
+                    self.note(format!(
+                        "{} {PASSED_OVER}: potential {name} has no such key",
+                        section.path(key.name)
+                    ));
+                    continue;
+                }
                 let why = format!(
                     "potential {name} has no such key; leave it out, or say potential = \"{}\"",
                     other.name
@@ -227,6 +242,59 @@ pub(super) fn written(film: &Film) -> Vec<Line> {
             vec![chosen(DLVO.name), (DEBYE.name, format!("{:?}", dlvo.debye()), "lambda / delta_A")]
         }
     }
+}
+
+/// The potential without which a key of a table has no meaning; `None` for a key of all.
+pub(super) fn owner(table: &str, key: &str) -> Option<&'static str> {
+    let own = |choice: &Choice| match table {
+        "physical" => choice.physical,
+        _ => choice.groups,
+    };
+    let has = |choice: &&Choice| own(choice).iter().any(|own| own.name == key);
+    CHOICES.into_iter().find(has).map(|choice| choice.name)
+}
+
+/// Values for the keys of a potential that a case in physical units does not have: those that make the same
+/// depth and height of the film.
+pub(super) fn others(physical: &PhysicalCase) -> Vec<(&'static str, String)> {
+    let (film, adhesion) = (physical.film.si, physical.adhesion.si);
+    let digits = |value: f64, unit: &str| format!("{} {unit}", rounded(value));
+    match physical.potential {
+        Film::FourTwo => {
+            let forces = SurfaceForces::of_well(film, adhesion, TYPICAL * film);
+            vec![
+                (POTENTIAL.name, FOUR_TWO.name.to_owned()),
+                match forces.hamaker < 1e-18 {
+                    true => (HAMAKER.name, digits(forces.hamaker * 1e21, "zJ")),
+                    false => (HAMAKER.name, digits(forces.hamaker * 1e18, "aJ")),
+                },
+                (PHYSICAL_DEBYE.name, digits(forces.debye * 1e9, "nm")),
+                (DOUBLE_LAYER.name, digits(forces.double_layer * 1e3, "mJ/m2")),
+            ]
+        }
+        Film::Dlvo(_) => vec![
+            (keys::PHYSICAL_ADHESION.name, digits(adhesion * 1e3, "mN/m")),
+            (keys::PHYSICAL_FILM.name, digits(film * 1e9, "nm")),
+        ],
+    }
+}
+
+/// The same of a film that is given by dimensionless groups.
+pub(super) fn others_of_groups(potential: &Film) -> Vec<(&'static str, String)> {
+    match potential {
+        Film::FourTwo => {
+            vec![(POTENTIAL.name, FOUR_TWO.name.to_owned()), (DEBYE.name, TYPICAL.to_string())]
+        }
+        Film::Dlvo(_) => Vec::new(),
+    }
+}
+
+/// A Debye length over the thickness of the film, as in water with some salt.
+const TYPICAL: f64 = 0.1;
+
+/// Four digits, which a slider's start needs no more of.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
 }
 
 /// The choice itself.

@@ -55,6 +55,8 @@ pub enum Kind {
     Quantity(Dimension, Range),
     /// One of a few words.
     Word(&'static [&'static str]),
+    /// A word that depends on the problem; what it may be, in words.
+    Text(&'static str),
     /// Yes or no: `true` or `false`, without quotes.
     Flag,
 }
@@ -97,7 +99,7 @@ impl Key {
     pub(crate) fn range(&self) -> Range {
         match self.kind {
             Kind::Number(range) | Kind::Quantity(_, range) => range,
-            Kind::Count { .. } | Kind::Word(_) | Kind::Flag => ANY,
+            Kind::Count { .. } | Kind::Word(_) | Kind::Text(_) | Kind::Flag => ANY,
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! The reader of case files, its messages and `docs/keys.md` are made from these.
 
-use super::{DeviceCase, Law, PathQuantity, StabilityCase, film, problem};
+use super::{DeviceCase, Law, PathQuantity, StabilityCase, film, picture, problem};
 use crate::units::Dimension;
 use std::fmt::Write as _;
 
@@ -347,7 +347,7 @@ pub(crate) const PLATE: [Key; 4 + film::GROUPS.len()] =
 
 /// Every table of a case file with its keys, those of catalogue problems' own parameters left out: these
 /// are in [`super::CatalogueEntry`].
-pub const TABLES: [Keys; 15] = [
+pub const TABLES: [Keys; 16] = [
     Keys { table: "shell", problems: "contact, two-plates, ring-load", keys: &SHELL },
     Keys { table: "dimensionless", problems: "contact", keys: &GROUPS },
     Keys { table: "dimensionless", problems: "two-plates", keys: &GROUPS_WITHOUT_FILM },
@@ -363,6 +363,7 @@ pub const TABLES: [Keys; 15] = [
     Keys { table: "diagram", problems: "all", keys: &DIAGRAM },
     Keys { table: "map", problems: "all", keys: &MAP },
     Keys { table: "stability", problems: "contact, two-plates", keys: &STABILITY },
+    Keys { table: "picture", problems: "all", keys: &picture::KEYS },
 ];
 
 /// The tables as Markdown, as `docs/keys.md` has them.
@@ -381,6 +382,7 @@ pub fn markdown() -> String {
                     format!("{dimension}, such as \"{}\"", dimension.example()),
                 ),
                 Kind::Word(words) => (words.join(", "), String::new()),
+                Kind::Text(words) => (words.to_owned(), String::new()),
                 Kind::Flag => ("true, false".to_owned(), String::new()),
             };
             let default = match key.default {

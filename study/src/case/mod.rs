@@ -4,6 +4,7 @@
 //! the catalogue), `document` parses it and lays the overrides over it, `resolve` checks every
 //! key and fills in defaults, and `write` says the result as a case file again.
 
+mod alternatives;
 mod catalogue;
 mod device;
 pub(crate) mod document;
@@ -15,6 +16,7 @@ pub mod keys;
 pub(crate) mod name;
 mod path;
 mod physical;
+pub(crate) mod picture;
 mod problem;
 pub(crate) mod reader;
 pub(crate) mod resolve;
@@ -26,18 +28,21 @@ mod write;
 #[cfg(test)]
 mod tests;
 
+pub use alternatives::{Needs, alternatives, needs};
 pub use catalogue::catalogue;
 pub use device::DeviceCase;
 pub use document::{Origin, Override, shown};
 pub use error::{CaseError, Complaint, LoadError};
+pub use film::PASSED_OVER;
 pub use headline::headline;
 pub use name::plain_name;
 pub use path::{PathEnd, PathQuantity, PhysicalPath};
 pub use physical::{PhysicalCase, Stiffness};
+pub use picture::{AxisCase, AxisScale, Parts, PictureCase, picture_of};
 pub use problem::{PlateCase, ProblemCase, RingLoadCase, TwoPlatesCase};
 pub use source::{SHIPPED, SWEEPS, find, load, load_text, parse};
 
-use shell_contact::film::Film;
+pub use shell_contact::film::Film;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -56,6 +61,8 @@ pub struct ResolvedCase {
     pub map: MapCase,
     /// What a trace or a diagram of a contact case counts as unstable.
     pub stability: StabilityCase,
+    /// How its pictures look.
+    pub picture: PictureCase,
 }
 
 /// Which unstable modes of a contact state are counted.
@@ -250,6 +257,8 @@ pub struct CatalogueEntry {
     pub summary: String,
     /// Name of the continued parameter.
     pub parameter: String,
+    /// The parameter and the observables, by name, with what axes of pictures call them.
+    pub axes: Vec<(String, String)>,
     /// Where the continued parameter starts by default.
     pub start: f64,
     /// Where it ends by default.

@@ -7,6 +7,7 @@ use super::keys::{self, ANY, Key, Kind, POISSON_SKALAK, Range, names};
 use super::name::own_name;
 use super::path::Scale;
 use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
+use super::picture;
 use super::problem::BUILT_IN;
 use super::reader::{Reader, Section};
 use super::stability;
@@ -15,6 +16,7 @@ use super::{
     LoadedCase, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, ShellCase,
 };
 use crate::closest::closest;
+use std::cell::RefCell;
 
 const SHELL: &[&str] = &names(&keys::SHELL);
 const DIMENSIONLESS: &[&str] = &names(&keys::GROUPS);
@@ -40,6 +42,7 @@ pub(super) const HOMES: &[(&str, &[&str])] = &[
     ("map", MAP),
     ("device", DEVICE),
     ("stability", STABILITY),
+    ("picture", picture::NAMES),
 ];
 
 /// Steps shorter than this part of the way are lost in the rounding of the parameter.
@@ -60,8 +63,12 @@ pub(crate) fn resolve(
     catalogue: &[CatalogueEntry],
 ) -> Result<LoadedCase, Vec<CaseError>> {
     let reader = Reader::new(file);
-    let resolver =
-        Resolver { reader: &reader, root: Section::root(tree), notes: Vec::new(), catalogue };
+    let resolver = Resolver {
+        reader: &reader,
+        root: Section::root(tree),
+        notes: RefCell::default(),
+        catalogue,
+    };
     let loaded = resolver.run(name);
     match loaded {
         Some(loaded) if reader.has_no_errors() => Ok(loaded),
@@ -72,7 +79,7 @@ pub(crate) fn resolve(
 pub(super) struct Resolver<'a> {
     pub(super) reader: &'a Reader,
     pub(super) root: Section<'a>,
-    notes: Vec<String>,
+    notes: RefCell<Vec<String>>,
     catalogue: &'a [CatalogueEntry],
 }
 
@@ -97,7 +104,8 @@ impl<'a> Resolver<'a> {
             let hint = format!("write problem = \"contact\", or one of {}", known.join(", "));
             self.reader.missing(self.root, "problem", hint);
         }
-        let problem = self.reader.text(self.root, "problem")?;
+        let problem_name = self.reader.text(self.root, "problem")?;
+        let problem = problem_name;
         let (problem, path) = match BUILT_IN.iter().find(|(own, _)| *own == problem) {
             Some((_, read)) => read(&mut self),
             None => match self.catalogue.iter().find(|entry| entry.name == problem) {
@@ -115,6 +123,7 @@ impl<'a> Resolver<'a> {
         let diagram = path.as_ref().and_then(|path| self.diagram(path));
         let map = self.map();
         let stability = stability::stability(self.reader, self.table("stability", STABILITY));
+        let picture = self.picture(&self.columns(problem_name));
         let case = ResolvedCase {
             name: name?,
             problem: problem?,
@@ -122,8 +131,28 @@ impl<'a> Resolver<'a> {
             diagram: diagram?,
             map: map?,
             stability: stability?,
+            picture: picture?,
         };
-        Some(LoadedCase { case, notes: self.notes })
+        Some(LoadedCase { case, notes: self.notes.into_inner() })
+    }
+
+    /// Something that deserves to be said.
+    pub(super) fn note(&self, text: String) {
+        self.notes.borrow_mut().push(text);
+    }
+
+    /// Columns of the branches of a problem that the axes of pictures may show.
+    fn columns(&self, problem: &str) -> Vec<&'a str> {
+        match self.catalogue.iter().find(|entry| entry.name == problem) {
+            Some(entry) => entry
+                .axes
+                .iter()
+                .map(|(name, _)| name.as_str())
+                .chain(std::iter::once("unstable"))
+                .collect(),
+            None if problem == "ring-load" => picture::RING.to_vec(),
+            None => picture::PLATES.to_vec(),
+        }
     }
 
     /// A table whose keys are all known.
@@ -147,6 +176,7 @@ impl<'a> Resolver<'a> {
             "device",
             "stability",
             "events",
+            "picture",
         ];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
@@ -213,7 +243,7 @@ impl<'a> Resolver<'a> {
     fn entry(&mut self, entry: &CatalogueEntry) -> (Option<ProblemCase>, Option<PathCase>) {
         self.reader.only(
             self.root,
-            &["name", "problem", "parameters", "mesh", "path", "diagram", "map"],
+            &["name", "problem", "parameters", "mesh", "path", "diagram", "map", "picture"],
             HOMES,
         );
         let section = self.reader.section(self.root, "parameters");
@@ -282,7 +312,7 @@ impl<'a> Resolver<'a> {
             _ => return None,
         };
         if b.is_some() && !matches!(law, Law::MooneyRivlin { .. }) {
-            self.notes.push(format!("shell.b has no effect: {law} has no such parameter"));
+            self.note(format!("shell.b has no effect: {law} has no such parameter"));
         }
         Some(ShellCase { law, poisson: poisson? })
     }

@@ -1,6 +1,7 @@
 //! A resolved case as a case file again: everything written out, nothing left to defaults.
 
 use super::film;
+use super::picture;
 use super::{
     CatalogueCase, ContactCase, DiagramCase, EventsCase, Groups, MapCase, MeshCase, PathCase,
     PathEnd, PhysicalPath, ProblemCase, ResolvedCase, ShellCase, StabilityCase,
@@ -25,6 +26,7 @@ impl ResolvedCase {
         if self.problem.has_modes() {
             stability(&mut out, self.stability);
         }
+        picture::write(&mut out, &self.picture);
         out.0
     }
 }

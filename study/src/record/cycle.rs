@@ -5,10 +5,11 @@ use super::column::PLATES;
 use super::events::maxwell_of;
 use super::number::rounded;
 use super::outline::State;
+use super::physical::{Laboratory, spoken};
 use super::result::{Cell, MaxwellRecord, Table};
 use super::summary::{aligned, count};
 use super::view::CyclePictures;
-use crate::case::DeviceCase;
+use crate::case::{DeviceCase, ResolvedCase};
 use continuation::StopReason;
 use serde::Serialize;
 use serde_json::json;
@@ -377,8 +378,67 @@ pub fn cycle_table(result: &CycleResult) -> Table {
     table
 }
 
+/// Lengths, forces and energies of a cycle in physical units.
+struct Physically {
+    length: (String, f64),
+    force: (String, f64),
+    energy: (String, f64),
+}
+
+impl Physically {
+    /// `None` for a case that is dimensionless.
+    fn of(case: &ResolvedCase, result: &CycleResult) -> Option<Self> {
+        let laboratory = Laboratory::of(case, &[&result.branch])?;
+        let unit = |unit: &str| {
+            laboratory
+                .convert(unit)
+                .map(|(unit, factor)| (spoken(unit), factor))
+                .unwrap_or_default()
+        };
+        Some(Physically {
+            length: unit("R0"),
+            force: unit("sqrt(chi k_b)"),
+            energy: unit("chi R0^2"),
+        })
+    }
+
+    /// The jumps once more.
+    fn jumps(&self, jumps: &[JumpRecord]) -> String {
+        let named = |name: &str, unit: &str| format!("{name} [{unit}]");
+        let number = |value: Option<f64>, factor: f64| {
+            value.map_or_else(|| "–".to_string(), |value| rounded(factor * value))
+        };
+        let (length, force, energy) = (&self.length, &self.force, &self.energy);
+        let mut rows = vec![vec![
+            "in physical units".to_owned(),
+            named("z0 before", &length.0),
+            named("z0 after", &length.0),
+            named("force before", &force.0),
+            named("force after", &force.0),
+            named("dissipated", &energy.0),
+        ]];
+        rows.extend(jumps.iter().map(|jump| {
+            vec![
+                jump.direction.to_owned(),
+                number(jump.z0_before, length.1),
+                number(jump.z0_after, length.1),
+                number(jump.force_before, force.1),
+                number(jump.force_after, force.1),
+                number(jump.dissipated, energy.1),
+            ]
+        }));
+        aligned(&rows)
+    }
+
+    /// A place of the path in brackets.
+    fn place(&self, (z0, force): (f64, f64)) -> String {
+        let (f, z) = (rounded(self.force.1 * force), rounded(self.length.1 * z0));
+        format!(" ({f} {} at {z} {})", self.force.0, self.length.0)
+    }
+}
+
 /// The summary; `folder` is where the files went, if they went anywhere.
-pub fn cycle_summary(result: &CycleResult, folder: Option<&Path>) -> String {
+pub fn cycle_summary(case: &ResolvedCase, result: &CycleResult, folder: Option<&Path>) -> String {
     let mut out = String::new();
     let name = result.parameter;
     let number = |value: Option<f64>| value.map_or_else(|| "–".to_string(), rounded);
@@ -401,9 +461,14 @@ pub fn cycle_summary(result: &CycleResult, folder: Option<&Path>) -> String {
         }
         out.push_str(&aligned(&rows));
     }
+    let physical = Physically::of(case, result);
+    if let Some(physical) = physical.as_ref().filter(|_| !result.jumps.is_empty()) {
+        let _ = write!(out, "\n{}", physical.jumps(&result.jumps));
+    }
     out.push('\n');
     if let Some((z0, force)) = result.pull_off {
-        let _ = writeln!(out, "pull-off: force {} at z0 = {}", rounded(force), rounded(z0));
+        let place = physical.map(|physical| physical.place((z0, force))).unwrap_or_default();
+        let _ = writeln!(out, "pull-off: force {} at z0 = {}{place}", rounded(force), rounded(z0));
     }
     if let (Some(dissipated), Some(area)) = (result.dissipated, result.loop_area)
         && let Some(imbalance) = result.imbalance()

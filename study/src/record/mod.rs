@@ -19,7 +19,7 @@ pub mod view;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use column::RING;
+pub(crate) use column::{PLATES, RING};
 pub use cycle::{CycleResult, FoldRecord, JumpRecord, PathModes, PathRow, ReportedCycle};
 pub use cycle::{StretchRecord, Way, cycle_json, cycle_summary, cycle_table};
 pub use diagram::{BranchOrigin, BranchRecord, DiagramResult, NearRecord, Symmetry};
@@ -28,7 +28,7 @@ pub use events::events_json;
 pub use map::{MapCurve, MapPoint, MapResult, map_json, map_summary};
 pub use orbits::{CycleRecord, CyclesRecord, OrbitRecord, OrbitsRecord};
 pub use outline::{Outline, State};
-pub use physical::{PhysicalUnits, Scales, Unit, physical_table};
+pub use physical::{Laboratory, PhysicalUnits, Scales, Unit, physical_table, spoken};
 pub use result::{Cell, ContactRow, EventRecord, FormRecord, MaxwellRecord, Table};
 pub use result::{ModeRecord, Pictures, ResolutionRecord, ShapeRecord};
 pub use result::{StabilityRecord, TraceResult};

@@ -14,6 +14,8 @@ pub struct Scales {
     pub pressure: f64,
     /// `chi R0²`, in J.
     pub energy: f64,
+    /// `chi`, in N/m.
+    pub tension: f64,
     /// `w0 / delta_A`, in Pa, the unit of the film's pressure.
     pub film_pressure: f64,
 }
@@ -29,6 +31,7 @@ impl Scales {
             force: physical.force_scale(&contact.groups),
             pressure: chi / radius,
             energy: chi * radius * radius,
+            tension: chi,
             film_pressure: physical.adhesion.si / physical.film.si,
         })
     }
@@ -41,6 +44,7 @@ const LENGTHS: [Unit; 3] = [("nm", 1e-9), ("um", 1e-6), ("mm", 1e-3)];
 const FORCES: [Unit; 4] = [("pN", 1e-12), ("nN", 1e-9), ("uN", 1e-6), ("mN", 1e-3)];
 const PRESSURES: [Unit; 4] = [("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9)];
 const ENERGIES: [Unit; 4] = [("aJ", 1e-18), ("fJ", 1e-15), ("pJ", 1e-12), ("nJ", 1e-9)];
+const TENSIONS: [Unit; 3] = [("uN/m", 1e-6), ("mN/m", 1e-3), ("N/m", 1.0)];
 const VOLUMES: [Unit; 3] = [("nm^3", 1e-27), ("um^3", 1e-18), ("mm^3", 1e-9)];
 
 /// A unit gives way to the next one where numbers reach this; lengths of shells stay in nanometres
@@ -58,8 +62,10 @@ pub struct PhysicalUnits {
     pub force: Unit,
     /// Of pressures.
     pub pressure: Unit,
-    /// Of energies.
+    /// Of energies, bending moduli among them.
     pub energy: Unit,
+    /// Of tensions, adhesion among them.
+    pub tension: Unit,
     /// Of the film's pressure.
     pub film_pressure: Unit,
 }
@@ -67,10 +73,17 @@ pub struct PhysicalUnits {
 impl PhysicalUnits {
     /// The units for a branch: the largest number of each kind has one to three digits before the point.
     pub fn for_table(scales: &Scales, table: &Table) -> PhysicalUnits {
+        PhysicalUnits::for_tables(scales, &[table])
+    }
+
+    /// The same for several branches, which share their units.
+    pub fn for_tables(scales: &Scales, tables: &[&Table]) -> PhysicalUnits {
         let largest = |unit: &str| {
-            let of_unit = table.columns().iter().filter(|name| table.unit(name) == unit);
-            of_unit
-                .flat_map(|name| table.numbers(name))
+            let numbers = tables.iter().flat_map(|table| {
+                let of_unit = table.columns().iter().filter(|name| table.unit(name) == unit);
+                of_unit.flat_map(|name| table.numbers(name)).collect::<Vec<f64>>()
+            });
+            numbers
                 .filter(|value| value.is_finite())
                 .fold(0.0_f64, |largest, value| largest.max(value.abs()))
         };
@@ -80,6 +93,7 @@ impl PhysicalUnits {
             volume: choose(&VOLUMES, scales.length.powi(3) * largest("R0^3")),
             force: choose(&FORCES, scales.force * largest("sqrt(chi k_b)")),
             pressure: choose(&PRESSURES, scales.pressure * largest("chi/R0")),
+            tension: choose(&TENSIONS, scales.tension * largest("chi")),
             energy: choose(&ENERGIES, scales.energy * largest("chi R0^2")),
             film_pressure: choose(&PRESSURES, scales.film_pressure),
         }
@@ -93,6 +107,7 @@ impl PhysicalUnits {
             "sqrt(chi k_b)" => (self.force, scales.force),
             "chi/R0" => (self.pressure, scales.pressure),
             "chi R0^2" => (self.energy, scales.energy),
+            "chi" => (self.tension, scales.tension),
             "w0/delta_A" => (self.film_pressure, scales.film_pressure),
             _ => return None,
         };
@@ -106,36 +121,69 @@ fn choose(units: &[Unit], largest: f64) -> Unit {
     units.iter().find(fits).copied().unwrap_or(last)
 }
 
-/// The table in physical units: `point`, then every column that has a unit, with its new unit at the end
-/// of its name (`z0_nm`, `force_nN`), then `event`. `None` for a case that is not in physical units.
+/// The units of a case in physical units, and what they are worth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Laboratory {
+    /// What one dimensionless unit is.
+    pub scales: Scales,
+    /// The units in which its numbers are written.
+    pub units: PhysicalUnits,
+}
+
+impl Laboratory {
+    /// That of a case with these tables; `None` for one that is not in physical units.
+    pub fn of(case: &ResolvedCase, tables: &[&Table]) -> Option<Laboratory> {
+        let scales = Scales::of(case)?;
+        Some(Laboratory { scales, units: PhysicalUnits::for_tables(&scales, tables) })
+    }
+
+    /// The physical unit of what has this dimensionless one, and what a number must be multiplied with.
+    pub fn convert(&self, unit: &str) -> Option<(&'static str, f64)> {
+        self.units.of(&self.scales, unit)
+    }
+
+    /// A table in these units: its columns of names and numbers of points, then every column that has a
+    /// unit, with its new unit at the end of its name (`z0_nm`, `force_nN`), then `event`.
+    pub fn table(&self, case: &ResolvedCase, table: &Table) -> Table {
+        const FIRST: [&str; 3] = ["point", "direction", "step"];
+        let columns = table.columns();
+        let first: Vec<usize> =
+            FIRST.iter().filter_map(|name| columns.iter().position(|own| own == name)).collect();
+        let mut titles: Vec<String> = first.iter().map(|at| columns[*at].clone()).collect();
+        let mut numbers: Vec<Vec<f64>> = Vec::new();
+        for name in columns {
+            let Some((unit, factor)) = self.convert(table.unit(name)) else { continue };
+            titles.push(format!("{name}_{}", unit.replace('^', "").replace('/', "_per_")));
+            numbers.push(table.numbers(name).into_iter().map(|value| factor * value).collect());
+        }
+        for (name, values) in of_the_laboratory(case, &self.scales, table) {
+            let (unit, size) = self.units.length;
+            titles.push(format!("{name}_{unit}"));
+            numbers.push(values.into_iter().map(|value| value / size).collect());
+        }
+        titles.push("event".to_owned());
+        let titles: Vec<&str> = titles.iter().map(String::as_str).collect();
+        let mut out = Table::with_columns(&titles);
+        let events: std::collections::BTreeMap<usize, &str> = table.words("event").collect();
+        for (row, own) in table.rows().iter().enumerate() {
+            let mut cells: Vec<Cell> = first.iter().map(|at| own[*at].clone()).collect();
+            cells.extend(numbers.iter().map(|values| Cell::Real(values[row])));
+            cells.push(events.get(&row).copied().unwrap_or("").into());
+            out.push(cells);
+        }
+        out
+    }
+}
+
+/// A table in physical units by itself. `None` for a case that is not in physical units.
 pub fn physical_table(case: &ResolvedCase, table: &Table) -> Option<Table> {
-    let scales = Scales::of(case)?;
-    let units = PhysicalUnits::for_table(&scales, table);
-    let convertible = |name: &&String| units.of(&scales, table.unit(name)).is_some();
-    let names: Vec<&String> = table.columns().iter().filter(convertible).collect();
-    let mut titles = vec!["point".to_owned()];
-    let mut columns: Vec<Vec<f64>> = Vec::new();
-    for name in names {
-        let Some((unit, factor)) = units.of(&scales, table.unit(name)) else { continue };
-        titles.push(format!("{name}_{}", unit.replace('^', "")));
-        columns.push(table.numbers(name).into_iter().map(|value| factor * value).collect());
-    }
-    for (name, values) in of_the_laboratory(case, &scales, table) {
-        let (unit, size) = units.length;
-        titles.push(format!("{name}_{unit}"));
-        columns.push(values.into_iter().map(|value| value / size).collect());
-    }
-    titles.push("event".to_owned());
-    let titles: Vec<&str> = titles.iter().map(String::as_str).collect();
-    let mut out = Table::with_columns(&titles);
-    let events: std::collections::BTreeMap<usize, &str> = table.words("event").collect();
-    for row in 0..table.rows().len() {
-        let mut cells: Vec<Cell> = vec![row.into()];
-        cells.extend(columns.iter().map(|values| Cell::Real(values[row])));
-        cells.push(events.get(&row).copied().unwrap_or("").into());
-        out.push(cells);
-    }
-    Some(out)
+    Some(Laboratory::of(case, &[table])?.table(case, table))
+}
+
+/// A unit as people write it: tables do without the one letter that is not ASCII, and without raised digits.
+pub fn spoken(unit: &str) -> String {
+    let unit = unit.replace("^3", "³").replace("^2", "²");
+    if unit.starts_with('u') { unit.replacen('u', "µ", 1) } else { unit }
 }
 
 /// The lengths that a laboratory names, in m, of a case that speaks of its lever or its path in such words: the
@@ -146,8 +194,8 @@ fn of_the_laboratory(
     table: &Table,
 ) -> Vec<(&'static str, Vec<f64>)> {
     let ProblemCase::Contact(contact) = &case.problem else { return Vec::new() };
-    let spoken = |physical: &PhysicalCase| physical.lever.is_some() || physical.path.is_some();
-    if !contact.physical.as_deref().is_some_and(spoken) {
+    let named = |physical: &PhysicalCase| physical.lever.is_some() || physical.path.is_some();
+    if !contact.physical.as_deref().is_some_and(named) {
         return Vec::new();
     }
     let z0 = table.numbers("z0");

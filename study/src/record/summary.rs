@@ -1,17 +1,24 @@
 //! The table of special points that people see at the end of a trace.
 
 use super::number::rounded;
+use super::physical::{Laboratory, spoken};
 use super::result::TraceResult;
+use crate::case::ResolvedCase;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// The summary; `folder` is where the files went, if they went anywhere.
-pub fn summary(result: &TraceResult, folder: Option<&Path>) -> String {
+/// The summary; `folder` is where the files went, if they went anywhere. A case in physical units has its
+/// special points once more in those.
+pub fn summary(case: &ResolvedCase, result: &TraceResult, folder: Option<&Path>) -> String {
     let mut out = String::new();
     if result.events.is_empty() {
         out.push_str("no special points\n");
     } else {
         out.push_str(&aligned(&event_rows(result)));
+        if let Some(rows) = physical_rows(case, result) {
+            out.push('\n');
+            out.push_str(&aligned(&rows));
+        }
     }
     if let Some(stability) = &result.stability {
         out.push_str(&stability.text());
@@ -81,6 +88,42 @@ fn event_rows(result: &TraceResult) -> Vec<Vec<String>> {
     rows.iter()
         .map(|row| row.iter().zip(&used).filter(|(_, u)| **u).map(|(c, _)| c.clone()).collect())
         .collect()
+}
+
+/// The special points in physical units; without those at which only asymmetric modes change, which are many.
+fn physical_rows(case: &ResolvedCase, result: &TraceResult) -> Option<Vec<Vec<String>>> {
+    let laboratory = Laboratory::of(case, &[&result.table])?;
+    let table = &result.table;
+    let parameter = result.parameter.as_str();
+    let mut names = vec![parameter, "z0", "deformation", "force", "energy_total"];
+    names.dedup();
+    let columns: Vec<(&str, &'static str, f64)> = names
+        .into_iter()
+        .enumerate()
+        .filter(|(at, name)| *at == 0 || *name != parameter)
+        .filter_map(|(_, name)| {
+            let (unit, factor) = laboratory.convert(table.unit(name))?;
+            Some((name, unit, factor))
+        })
+        .collect();
+    let mut titles = vec!["in physical units".to_owned()];
+    titles.extend(columns.iter().map(|(name, unit, _)| format!("{name} [{}]", spoken(unit))));
+    let mut rows = vec![titles];
+    for event in result.events.iter().filter(|event| event.mode.is_none()) {
+        let mut row = vec![event.kind.clone()];
+        row.extend(columns.iter().map(|(name, _, factor)| {
+            let value = match *name {
+                own if own == parameter => event.parameter,
+                "z0" => event.z0,
+                "deformation" => event.deformation,
+                "force" => event.force,
+                _ => event.energy_total,
+            };
+            value.map_or_else(|| "–".to_owned(), |value| rounded(factor * value))
+        }));
+        rows.push(row);
+    }
+    (rows.len() > 1).then_some(rows)
 }
 
 /// A number and its noun.

@@ -132,7 +132,9 @@ fn other_problems_use_their_own_parameter_s_name() {
 
 #[test]
 fn the_summary_lines_up() {
-    let text = summary(&example(), Some(std::path::Path::new("out")));
+    let of = |name: &str| crate::case::load(name.as_ref(), &[], &[]).unwrap().case;
+    let case = of("fig12");
+    let text = summary(&case, &example(), Some(std::path::Path::new("out")));
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines[0], "special point        z0    force  unstable");
     assert_eq!(lines[1], "fold           0.900000  2.69800     0 → 1");
@@ -141,5 +143,23 @@ fn the_summary_lines_up() {
     assert_eq!(lines[5], "written to out");
     let mut bare = example();
     bare.events.clear();
-    assert!(summary(&bare, None).starts_with("no special points\n"));
+    assert!(summary(&case, &bare, None).starts_with("no special points\n"));
+    // sqrt(chi k_b) is 9.55 nN there
+    let text = summary(&of("polymer"), &example(), None);
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines[4].starts_with("in physical units  z0 [nm]"), "{text}");
+    assert!(lines[4].contains("force [pN]") || lines[4].contains("force [nN]"), "{text}");
+    assert!(lines[5].starts_with("fold") && lines[5].contains("1350.00"), "{text}");
+}
+
+#[test]
+fn axes_may_show_columns_that_there_are() {
+    use crate::case::picture::{PLATES, RING};
+    for (names, known) in [(PLATES, super::column::PLATES), (RING, super::column::RING)] {
+        for name in names {
+            assert!(known.iter().any(|column| column.name == *name), "{name}");
+        }
+    }
+    let columns = Table::contact().columns().to_vec();
+    assert!(PLATES.iter().all(|name| columns.contains(&(*name).to_owned())));
 }

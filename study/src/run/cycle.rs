@@ -377,7 +377,8 @@ fn pictures(
         }
         let of = |point: Option<&CyclePoint>, when: &str| {
             let point = point?;
-            let label = format!("{when}: z₀/R₀ = {:.3}", point.z0);
+            let label =
+                format!("{when}: F/√(χk_{{b}}) = {:.3}, z₀/R₀ = {:.3}", point.force, point.z0);
             Some(Shape { label, ..shape(point)? })
         };
         let pair = [of(before, "before"), of(after, "after")];

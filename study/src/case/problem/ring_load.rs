@@ -34,8 +34,17 @@ const ANGLE: Range =
 
 impl Resolver<'_> {
     pub(in crate::case) fn ring_load(&mut self) -> Read {
-        let tables =
-            ["name", "problem", "shell", "dimensionless", "mesh", "path", "diagram", "map"];
+        let tables = [
+            "name",
+            "problem",
+            "shell",
+            "dimensionless",
+            "mesh",
+            "path",
+            "diagram",
+            "map",
+            "picture",
+        ];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
         let groups = self.table("dimensionless", NAMES);

@@ -78,6 +78,7 @@ impl<'a> Resolver<'a> {
             "diagram",
             "map",
             "stability",
+            "picture",
         ];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();

@@ -99,3 +99,20 @@ fn surface_forces_make_adhesion_and_film() {
         text.replace("surface_potential = \"40 mV\"", "double_layer = \"0.67 mJ/m2\"");
     assert!(read_with(&by_strength, &[]).is_ok());
 }
+
+#[test]
+fn an_override_exchanges_the_potential() {
+    let with = |name: &str, texts: &[&str]| {
+        let overrides: Vec<Override> = texts.iter().copied().map(Override::new).collect();
+        load(name.as_ref(), &overrides, &[])
+    };
+    let dlvo = ["physical.potential=dlvo", "physical.hamaker=5 zJ", "physical.debye=5 nm"];
+    let loaded =
+        with("polymer", &[&dlvo[..], &["physical.double_layer=2 mJ/m2"]].concat()).unwrap();
+    assert!(loaded.notes.iter().any(|note| note.starts_with("physical.film is passed over")));
+    let ProblemCase::Contact(contact) = &loaded.case.problem else { panic!("{loaded:?}") };
+    assert!(matches!(contact.groups.potential, Film::Dlvo(_)));
+    // what is given with it still must go with it
+    let both = with("polymer", &[&dlvo[..], &["physical.film=20 nm"]].concat()).unwrap_err();
+    assert!(both.to_string().contains("potential dlvo has no such key"), "{both}");
+}

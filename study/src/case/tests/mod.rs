@@ -1,6 +1,7 @@
 //! Cases, good and bad.
 
 mod film;
+mod picture;
 
 use super::source::load_text;
 use super::*;
@@ -60,6 +61,7 @@ fn catalogue() -> Vec<CatalogueEntry> {
             name: "bratu".into(),
             summary: "Bratu's equation".into(),
             parameter: "lambda".into(),
+            axes: vec![("lambda".into(), "load".into()), ("max_u".into(), "largest u".into())],
             start: 0.0,
             end: 1.0,
             start_allowed: Allowed::Any,
@@ -70,6 +72,7 @@ fn catalogue() -> Vec<CatalogueEntry> {
             name: "cusp".into(),
             summary: "the cusp".into(),
             parameter: "mu".into(),
+            axes: vec![("mu".into(), "parameter".into()), ("x".into(), "state".into())],
             start: -1.0,
             end: 1.0,
             start_allowed: Allowed::Within(-3.0, 3.0),

@@ -1,8 +1,8 @@
 //! The curves that begin on one base branch.
 
 use super::Task;
-use crate::case::PathCase;
-use crate::record::{MapPoint, Table};
+use crate::case::{PathCase, ProblemCase};
+use crate::record::{MapPoint, PLATES, Table};
 use crate::run::{Observer, listen};
 use continuation::codim2::{BranchPointCurve, Curve, CurveError, FoldCurve, HopfCurve};
 use continuation::{Branch, Event, EventKind, Problem, Settings, Stop, StopReason, Watch};
@@ -206,6 +206,9 @@ fn plain<P: Problem>(
     let titles = ["point", parameter, key].into_iter().chain(names.iter().copied());
     let titles: Vec<&str> = titles.chain(["unstable", "event"]).collect();
     let mut table = Table::with_columns(&titles);
+    if matches!(task.case.problem, ProblemCase::Contact(_)) {
+        table = table.described(PLATES);
+    }
     for (index, point) in branch.points.iter().enumerate() {
         let event = point.event.map(|e| &branch.events[e].kind).filter(|kind| is_special(kind));
         let mut row = vec![index.into(), first[index].into(), second[index].into()];
