@@ -111,11 +111,11 @@ fn a_cycle_may_be_stopped_at_any_moment() {
 fn a_map_keeps_its_curves() {
     for signal in SIGNALS {
         let run = [
-            &["map", "fig12", "--elements", "100", "--over", "adhesion"][..],
+            &["map", "fig12", "--elements", "300", "--over", "adhesion"][..],
             &["--set", "path.max_points=100000", "--set", "path.max_step=1e-3"],
         ]
         .concat();
-        let json = stopped(&run, signal, Duration::from_millis(2500), "map.json").unwrap();
+        let json = stopped(&run, signal, Duration::from_millis(2000), "map.json").unwrap();
         assert_eq!(json["stopped_because"], "interrupted");
     }
 }

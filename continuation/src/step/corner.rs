@@ -32,16 +32,20 @@ const SINGULAR: f64 = 5.0;
 const ONE_WAY: f64 = 0.6;
 /// Contraction of the corrector above which the cubic is asked.
 const SLOW: f64 = 0.1;
+/// The same above which another branch may be close.
+const SLOWER: f64 = 0.15;
 /// Part of the angle by which the prediction has to be wrong for the cubic to be asked: a corner at a part
 /// `x` of the step makes `1 - x` of its own angle.
 const SURPRISE: f64 = 0.1;
+/// The same by which it was wrong beyond doubt.
+const WRONG: f64 = 0.15;
 /// Part of the turn that the cubic may be off in the middle of a step, in steps, at most: going over to a
 /// branch that runs beside makes 1/20, the approach to a sharp fold 1/70.
 const BESIDE: f64 = 1.0 / 30.0;
 /// The same where the prediction was wrong. A corner in the middle that is all of the turn makes 1/32.
 const SURPRISED: f64 = 1.0 / 80.0;
 /// The same up to which nothing more is asked: an arc of 0.35 radians makes 1/1000.
-const BOW: f64 = 1.0 / 300.0;
+const BOW: f64 = 1.0 / 100.0;
 /// Part of the whole turn between branch and cubic in the middle. A corner makes up to a half of its own
 /// angle; sharp folds, where steps are longest for what they turn, 1/40.
 const BENT: f64 = 0.05;
@@ -83,11 +87,13 @@ impl Core<'_> {
         }
         interpolate(a, b, h, tangents, 0.5 * h, middle);
         let bow = self.distance_from_branch(Constraint::Plane(a, 0.5 * h), middle)? / h;
+        let wrong = visible && quality.deviation >= WRONG * quality.angle;
+        let slow = asymmetry > limit || !one_way || quality.contraction > SLOWER;
+        if wrong && bow > SURPRISED * quality.angle || slow && bow > BESIDE * turn {
+            return Ok(true);
+        }
         if bow <= BOW * turn {
             return Ok(false);
-        }
-        if bow > if surprising && visible { SURPRISED * quality.angle } else { BESIDE * turn } {
-            return Ok(true);
         }
         match self.correct(Constraint::Plane(a, 0.5 * h), middle, Precision::Look) {
             Err(Refusal::Evaluation(error)) => Err(Refusal::Evaluation(error)),

@@ -8,7 +8,8 @@ use crate::step::{Constraint, Core, Precision, State};
 /// How far from the start, relative to the step, a branch may pass and still be the same: the
 /// error of the Hermite cubic by which the step is interpolated.
 const NEAR: f64 = 0.02;
-/// The same once it is corrected on the plane of the start: the other side of a flat loop is farther.
+/// The same once it is corrected on the plane of the start, which brings it nearer but on the other side of a
+/// flat loop.
 const SAME: f64 = 1e-4;
 
 impl Tracer<'_> {
@@ -64,10 +65,10 @@ fn passes(
     if off > NEAR * h {
         return None;
     }
-    // at a branch point it may not converge
+    // at a branch point it does not converge, or not to the digit
     if core.correct(Constraint::Plane(at, 0.0), work, Precision::Look).is_ok() {
-        let (off, ..) = core.secant(work, at);
-        if off > SAME * h {
+        let (corrected, ..) = core.secant(work, at);
+        if corrected > SAME * h && corrected > 0.5 * off {
             return None;
         }
     }

@@ -115,11 +115,11 @@ const FINE_ERROR: f64 = 0.005;
 const POINTS: usize = 500;
 /// Most work for a branch, in corrections on 100 elements: 0.1 ms each, so that no evaluation takes half a second.
 /// Those of a good fit take a tenth of it.
-const MOST_WORK: f64 = 2500.0;
+const MOST_WORK: f64 = 2900.0;
 /// The same on the way to a fit: a mesh that does not resolve its film has a fold at every node.
-const ROUGH_WORK: f64 = 800.0;
+const ROUGH_WORK: f64 = 920.0;
 /// The same for the grid, unless it leaves too few starts.
-const GRID_WORK: f64 = 350.0;
+const GRID_WORK: f64 = 400.0;
 /// The fewest starts.
 const FEWEST_STARTS: usize = 6;
 /// `χ²/dof` beyond which the fine mesh has nothing to say: a few evaluations for the record.
