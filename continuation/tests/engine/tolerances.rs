@@ -22,14 +22,9 @@ fn off(branch: &Branch) -> f64 {
 
 #[test]
 fn tolerance_bounds_the_distance_from_the_branch() {
-    // at one length of the steps the corrections may all be short
     let with = |factor: f64| {
         let default = Settings::default();
-        let tolerance = factor * default.tolerance;
-        let lengths = (0..20).map(|k| Some(0.05 * 1.2f64.powi(k)));
-        lengths
-            .map(|max_step| off(&trace(Settings { tolerance, max_step, ..default.clone() })))
-            .fold(0.0, f64::max)
+        off(&trace(Settings { tolerance: factor * default.tolerance, ..default }))
     };
     assert!(with(1.0) < 1e-11, "{:e}", with(1.0));
     assert!(with(100.0) > 1e-11, "{:e}", with(100.0));

@@ -182,7 +182,7 @@ pub(super) const KEYS: [Key; 19] = super::key::joined(
 pub(super) const NAMES: &[&str] = &names(&KEYS);
 
 /// Columns of shells between plates that an axis may show.
-pub(crate) const PLATES: &[&str] = &[
+pub(crate) const PLATES: [&str; 14] = [
     "z0",
     "deformation",
     "force",

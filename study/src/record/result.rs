@@ -5,6 +5,7 @@ use super::orbits::CycleRecord;
 use super::outline::State;
 use super::summary::count;
 use super::view::{Curve, Profile, Shape};
+use crate::case::picture::PLATES as AXES;
 use continuation::{Eigenvector, StopReason};
 use serde::{Deserialize, Serialize};
 
@@ -199,24 +200,17 @@ pub struct ContactRow {
 
 impl ContactRow {
     /// The columns, in the order in which files have them.
-    pub const COLUMNS: [&'static str; 16] = [
-        "point",
-        "z0",
-        "deformation",
-        "force",
-        "unstable",
-        "pole_height",
-        "gas_pressure",
-        "volume",
-        "energy_total",
-        "energy_stretching",
-        "energy_bending",
-        "energy_film",
-        "energy_gas",
-        "energy_surface",
-        "contact_radius",
-        "event",
-    ];
+    pub const COLUMNS: [&'static str; 16] = {
+        let mut all = ["point"; 16];
+        // between them what pictures may have on an axis
+        let mut k = 0;
+        while k < AXES.len() {
+            all[k + 1] = AXES[k];
+            k += 1;
+        }
+        all[15] = "event";
+        all
+    };
 
     /// The cells, in the order of [`Self::COLUMNS`].
     pub fn cells(&self) -> Vec<Cell> {
