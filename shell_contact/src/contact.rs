@@ -4,8 +4,8 @@
 //! of the total potential energy of the half shell over `2π`; Jacobian: its Hessian. The number of
 //! negative eigenvalues is the number of unstable modes at fixed plate distance.
 
-use crate::density::{self, Coefficients};
-use crate::energy;
+use crate::density::Coefficients;
+use crate::energy::{self, gradients};
 use crate::film::{Film, Potential};
 use crate::gas::Gas;
 use crate::membrane::{Constant, Membrane};
@@ -13,7 +13,6 @@ use crate::meridian::Mesh;
 use crate::observables::{self, Observation};
 use crate::params::{Dimensionless, Law, ParameterError, Shell};
 use crate::plate::{self, Variable};
-use crate::scalar::{Lanes, Scalar};
 use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
@@ -265,9 +264,7 @@ impl ContactProblem {
             *r *= -excess;
         }
         let film = &self.potential;
-        energy::add_gradient(&self.mesh, u, film.wall(c), r, |at, x| {
-            density::gradient(law, film, c, at, x)
-        })
+        energy::add_gradient(&self.mesh, u, film.wall(c), r, &gradients::Energy { law, film, c })
     }
 }
 
@@ -316,34 +313,35 @@ impl Problem for ContactProblem {
         let (c, gas) = self.coefficients(u, p)?;
         let mesh = &self.mesh;
         let film = &self.potential;
-        let volume = energy::volume_gradient(mesh, u, out)?;
-        let by_excess = match which {
-            parameter::PRESSURE => gas.excess_by_ambient(volume),
-            parameter::SURFACE_TENSION => gas.excess_by_surface_tension(volume),
-            parameter::GAS_EXPONENT => gas.excess_by_exponent(volume),
-            _ => 0.0,
+        let by_excess: Option<fn(&Gas, f64) -> f64> = match which {
+            parameter::PRESSURE => Some(Gas::excess_by_ambient),
+            parameter::SURFACE_TENSION => Some(Gas::excess_by_surface_tension),
+            parameter::GAS_EXPONENT => Some(Gas::excess_by_exponent),
+            _ => None,
         };
-        for out in out.iter_mut() {
-            *out *= -by_excess;
+        if let Some(by_excess) = by_excess {
+            let factor = -by_excess(&gas, energy::volume_gradient(mesh, u, out)?);
+            out.iter_mut().for_each(|out| *out *= factor);
+        } else {
+            energy::volume(mesh, u)?;
+            out.fill(0.0);
         }
         if let Some(variable) = variable(which) {
             return plate::add_gradient_by(mesh, film, u, &c, variable, out);
         }
         if let Some(constant) = constant(which) {
             return with_law!(c.material(self.shell.law), |law| {
-                energy::add_gradient(mesh, u, film.wall(&c), out, |at, x| {
-                    density::material_gradient(&law, constant, &c, at, x)
-                })
+                let gradient = gradients::Material { law: &law, constant, c: &c };
+                energy::add_gradient(mesh, u, film.wall(&c), out, &gradient)
             });
         }
         match which {
-            parameter::BENDING => energy::add_gradient(mesh, u, film.wall(&c), out, |at, x| {
-                density::bending_gradient(c.poisson, at, x)
-            }),
+            parameter::BENDING => {
+                let gradient = gradients::Bending { poisson: c.poisson };
+                energy::add_gradient(mesh, u, film.wall(&c), out, &gradient)
+            }
             parameter::SURFACE_TENSION => {
-                energy::add_gradient(mesh, u, film.wall(&c), out, |at, x| {
-                    density::area_gradient(Scalar::constant(1.0), Lanes::ZERO, at, x)
-                })
+                energy::add_gradient(mesh, u, film.wall(&c), out, &gradients::Area)
             }
             _ => energy::admissible(mesh, u, film.wall(&c)),
         }

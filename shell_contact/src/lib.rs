@@ -30,6 +30,8 @@ mod certify;
 pub mod contact;
 pub mod density;
 pub mod device;
+pub mod discretisation;
+
 #[cfg(test)]
 mod dual;
 pub mod energy;

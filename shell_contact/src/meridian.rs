@@ -6,9 +6,10 @@
 use crate::half::HalfMeridian;
 use crate::params::ParameterError;
 use crate::quadrature::{FEWEST, MOST, gauss_legendre};
-use crate::scalar::{Lanes, WIDTH};
+use crate::scalar::{Lanes, Scalar, WIDTH};
 use crate::spline::{Basis, Component, HALF_BANDWIDTH, Knots};
 use continuation::linalg::SymmetricBand;
+use continuation::linalg::kernel::Arithmetic;
 use std::f64::consts::FRAC_PI_2;
 
 /// Gauss points per element unless asked otherwise.
@@ -72,6 +73,11 @@ impl Local {
         self.w_base + max(max(self.w[0], self.w[2]), max(self.w[3], 0.0))
     }
 
+    /// `w` where the functions have these values.
+    pub(crate) fn height(&self, functions: &[f64; 4]) -> f64 {
+        self.w_base + functions.iter().zip(&self.w).map(|(b, c)| b * c).sum::<f64>()
+    }
+
     /// `(u, w)` and three derivatives where the functions have the values `basis`.
     pub(crate) fn displacement(&self, basis: &Basis) -> [(f64, f64); 4] {
         let derivative = |k: usize| {
@@ -83,24 +89,31 @@ impl Local {
     }
 }
 
+/// A derivative of the functions against coefficients, of which the second is zero.
+#[inline(always)]
+fn dot<A: Arithmetic>(b: &[Lanes; 4], c: &[f64; 4]) -> Lanes {
+    let (first, third, last) = (b[0] * c[0], Lanes::constant(c[2]), Lanes::constant(c[3]));
+    b[3].mul_add::<A>(last, b[2].mul_add::<A>(third, first))
+}
+
 impl Cell {
     /// The displacements `(u, w)` and their derivatives, without the reference sphere.
     #[inline(always)]
-    pub fn displacement(&self, c: &Local) -> Place<Lanes> {
-        let dot = |k: usize, c: &[f64; 4]| {
-            let b = &self.basis[k];
-            b[0] * c[0] + b[2] * c[2] + b[3] * c[3]
-        };
-        Place {
-            s: [dot(0, &c.u) + c.u_base, dot(1, &c.u), dot(2, &c.u)],
-            z: [dot(0, &c.w) + c.w_base, dot(1, &c.w), dot(2, &c.w)],
+    pub(crate) fn displacement_by<A: Arithmetic>(&self, c: &Local) -> Place<Lanes> {
+        let mut place = Place { s: [Lanes::ZERO; 3], z: [Lanes::ZERO; 3] };
+        for k in 0..3 {
+            place.s[k] = dot::<A>(&self.basis[k], &c.u);
+            place.z[k] = dot::<A>(&self.basis[k], &c.w);
         }
+        place.s[0] = place.s[0] + c.u_base;
+        place.z[0] = place.z[0] + c.w_base;
+        place
     }
 
     /// The deformed meridian.
     #[inline(always)]
-    pub fn place(&self, c: &Local) -> Place<Lanes> {
-        let d = self.displacement(c);
+    pub(crate) fn place_by<A: Arithmetic>(&self, c: &Local) -> Place<Lanes> {
+        let d = self.displacement_by::<A>(c);
         Place {
             s: [self.sin + d.s[0], self.cos + d.s[1], d.s[2] - self.sin],
             z: [self.cos + d.z[0], d.z[1] - self.sin, d.z[2] - self.cos],
@@ -384,6 +397,7 @@ mod tests {
     use super::*;
     use crate::dual::close;
     use continuation::linalg::Matrix;
+    use continuation::linalg::kernel::{Fused, Separate};
 
     /// ∫(u² + w²) sin S dS by sampling against x·Mx.
     #[test]
@@ -415,11 +429,11 @@ mod tests {
         for e in 0..10 {
             let local = mesh.local(&x, e);
             for cell in mesh.cells(e) {
-                let lanes = cell.place(&local);
+                let both = [cell.place_by::<Separate>(&local), cell.place_by::<Fused>(&local)];
                 for l in 0..WIDTH {
                     let s = cell.sin.0[l].atan2(cell.cos.0[l]);
                     let place = mesh.place(&x, s);
-                    for k in 0..3 {
+                    for (lanes, k) in both.iter().flat_map(|lanes| [0, 1, 2].map(|k| (lanes, k))) {
                         close(lanes.s[k].0[l], place.s[k], 1e-11, 1e-12);
                         close(lanes.z[k].0[l], place.z[k], 1e-11, 1e-12);
                     }

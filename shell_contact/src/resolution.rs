@@ -9,7 +9,6 @@ use crate::contact::ContactProblem;
 use crate::density::Coefficients;
 use crate::film::{Film, Potential};
 use crate::half::HalfMeridian;
-use crate::spline::Basis;
 use crate::two_plates::{SupportedProblem, TwoPlatesProblem};
 use continuation::EvalError;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -128,29 +127,31 @@ pub(crate) fn longest(half: &impl HalfMeridian, (low, high): (f64, f64)) -> f64 
 /// Ends and middle of every element: what of them does not depend on the state.
 #[derive(Debug, Clone)]
 pub struct Sites {
-    each: Vec<Site>,
+    each: Vec<[Site; 3]>,
     longest: f64,
 }
 
 #[derive(Debug, Clone)]
 struct Site {
-    element: usize,
-    length: f64,
     cos: f64,
-    basis: Basis,
+    /// That of the element's length.
+    fourth_power: f64,
+    /// The functions of the element.
+    basis: [f64; 4],
 }
 
 impl Sites {
     fn of(half: &impl HalfMeridian) -> Sites {
         let knots = half.knots();
-        let mut each = Vec::with_capacity(3 * half.elements());
-        for element in 0..half.elements() {
+        let of = |element: usize| {
             let (start, end) = (knots.at(element), knots.at(element + 1));
             let length = end - start;
-            for at in [start, start + 0.5 * length, end] {
-                each.push(Site { element, length, cos: at.cos(), basis: knots.basis(element, at) });
-            }
-        }
+            [start, start + 0.5 * length, end].map(|at| {
+                let [basis, ..] = knots.basis(element, at);
+                Site { cos: at.cos(), fourth_power: length.powi(4), basis }
+            })
+        };
+        let each = (0..half.elements()).map(of).collect();
         Sites { each, longest: longest(half, (0.0, FRAC_PI_2)) }
     }
 }
@@ -162,13 +163,16 @@ fn of_half(
     u: &[f64],
     c: &Coefficients,
 ) -> Resolution {
-    let mut film = f64::INFINITY;
-    for site in &sites.each {
-        let [(_, w), ..] = half.local(u, site.element).displacement(&site.basis);
-        let delta = c.plate - site.cos - w;
-        let stiffness = potential.jet(delta, c.adhesion, c.film).d2.abs();
-        let own = (c.bending / stiffness).sqrt().sqrt();
-        film = film.min(own / site.length);
+    // fourth power of the lengths per element
+    let mut least = f64::INFINITY;
+    for (e, sites) in sites.each.iter().enumerate() {
+        let local = half.local(u, e);
+        for site in sites {
+            let delta = c.plate - site.cos - local.height(&site.basis);
+            let stiffness = potential.jet(delta, c.adhesion, c.film).d2.abs();
+            least = least.min(c.bending / (stiffness * site.fourth_power));
+        }
     }
+    let film = least.sqrt().sqrt();
     Resolution { per_film_length: film, per_wavelength: wavelength(c) / sites.longest }
 }

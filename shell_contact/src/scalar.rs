@@ -4,6 +4,7 @@
 //! in lockstep, which the compiler turns into vector instructions) and, in tests, on dual numbers,
 //! which differentiate it automatically and so certify every hand-written derivative.
 
+use continuation::linalg::kernel::Arithmetic;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// What a pointwise density needs of its numbers.
@@ -26,20 +27,12 @@ pub trait Scalar:
     fn recip(self) -> Self;
     /// Exponential.
     fn exp(self) -> Self;
-    /// Whether it is zero; not needed where a derivative could matter, which is so by default.
-    fn is_zero(self) -> bool {
-        false
-    }
 }
 
 impl Scalar for f64 {
     #[inline(always)]
     fn constant(value: f64) -> f64 {
         value
-    }
-    #[inline(always)]
-    fn is_zero(self) -> bool {
-        self == 0.0
     }
     #[inline(always)]
     fn sqrt(self) -> f64 {
@@ -72,6 +65,26 @@ impl Lanes {
     pub fn sum(self) -> f64 {
         let [a, b, c, d] = self.0;
         (a + c) + (b + d)
+    }
+
+    /// The sums of the four numbers of each.
+    #[inline(always)]
+    pub fn sums([a, b, c, d]: [Lanes; 4]) -> Lanes {
+        // halves are added crosswise first: the same order as in [`Lanes::sum`]
+        let (a, b, c, d) = (a.0, b.0, c.0, d.0);
+        let left = [a[0] + a[2], b[0] + b[2], c[0] + c[2], d[0] + d[2]];
+        let right = [a[1] + a[3], b[1] + b[3], c[1] + c[3], d[1] + d[3]];
+        Lanes(left) + Lanes(right)
+    }
+
+    /// `self · b + c`.
+    #[inline(always)]
+    pub(crate) fn mul_add<A: Arithmetic>(self, b: Lanes, c: Lanes) -> Lanes {
+        let mut out = self.0;
+        for l in 0..WIDTH {
+            out[l] = A::mul_add(out[l], b.0[l], c.0[l]);
+        }
+        Lanes(out)
     }
 
     /// The smaller of each pair; undefined for NaN.
@@ -139,10 +152,6 @@ impl Scalar for Lanes {
     #[inline(always)]
     fn constant(value: f64) -> Lanes {
         Lanes([value; WIDTH])
-    }
-    #[inline(always)]
-    fn is_zero(self) -> bool {
-        self.0.iter().all(|x| *x == 0.0)
     }
     #[inline(always)]
     fn sqrt(self) -> Lanes {

@@ -99,6 +99,24 @@ fn a_bubble_leaves_its_mirror_image_on_both_ways() {
     }
 }
 
+/// Both poles lose their stability at the same place to rounding, so that the critical mode is any sum of
+/// the two: on every mesh one of them buckles.
+#[test]
+fn which_sum_of_two_modes_is_found_does_not_matter() {
+    for elements in (71..125).step_by(9) {
+        let problem = fig12(elements);
+        let x = stable_start(&problem, &problem.initial_state(), 1.15).unwrap();
+        for accuracy in [0.1, 0.03] {
+            let relaxation = RelaxationSettings { accuracy, ..RelaxationSettings::default() };
+            let cycle = go(&problem, &x, &settings(1.15, 0.79, relaxation));
+            let buckled = &cycle.jumps[1]; // the first is that onto both plates
+            near(buckled.parameter, 0.818_762, 1e-4);
+            let [_, lower, upper] = shape(&problem, &cycle, buckled.after);
+            assert!(lower < 0.6 && upper > 0.78, "{elements}: {lower}, {upper}");
+        }
+    }
+}
+
 /// Beyond its folds the buckled shell loses its mirror image too: one dimple grows while the other
 /// heals, and the way back is another one.
 #[test]

@@ -5,6 +5,7 @@
 //! that no loop has a short end. Half-bandwidths up to 8, and 11, are compiled with fixed loop lengths.
 //! Golub & Van Loan, *Matrix Computations*, 4th ed., sections 4.1.2 and 4.3.
 
+use super::kernel::{self, Arithmetic, Kernel};
 use super::vector::pivot_or_floor;
 
 /// What [`factor`] found.
@@ -55,36 +56,52 @@ fn factor_fixed<const K: usize, const W: usize>(
     n: usize,
     floor: f64,
 ) -> Pivots {
-    let (columns, _) = columns.as_chunks_mut::<W>();
-    let mut largest = [0.0; W];
-    let (mut negative, mut perturbed) = (0, 0);
-    for j in 0..n {
-        let Some((column, next)) = columns[j..].split_first_mut() else { break };
-        let Some(next) = next.first_chunk_mut::<K>() else { break };
-        let (d, replaced) = pivot_or_floor(column[0], floor);
-        perturbed += usize::from(replaced);
-        negative += usize::from(d < 0.0);
-        column[0] = d;
-        let inverse = 1.0 / d;
-        let mut l = [1.0; W];
-        for i in 1..W {
-            l[i] = column[i] * inverse;
-        }
-        for k in 1..W {
-            let t = column[k];
-            for i in 0..W - k {
-                next[k - 1][i] -= t * l[k + i];
+    kernel::run(Factor::<K, W> { columns, n, floor })
+}
+
+struct Factor<'a, const K: usize, const W: usize> {
+    columns: &'a mut [f64],
+    n: usize,
+    floor: f64,
+}
+
+impl<const K: usize, const W: usize> Kernel for Factor<'_, K, W> {
+    type Output = Pivots;
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) -> Pivots {
+        let Factor { columns, n, floor } = self;
+        let (columns, _) = columns.as_chunks_mut::<W>();
+        let mut largest = [0.0; W];
+        let (mut negative, mut perturbed) = (0, 0);
+        for j in 0..n {
+            let Some((column, next)) = columns[j..].split_first_mut() else { break };
+            let Some(next) = next.first_chunk_mut::<K>() else { break };
+            let (d, replaced) = pivot_or_floor(column[0], floor);
+            perturbed += usize::from(replaced);
+            negative += usize::from(d < 0.0);
+            column[0] = d;
+            let inverse = 1.0 / d;
+            let mut l = [1.0; W];
+            for i in 1..W {
+                l[i] = column[i] * inverse;
             }
+            for k in 1..W {
+                let t = column[k];
+                for i in 0..W - k {
+                    next[k - 1][i] = A::mul_add(-t, l[k + i], next[k - 1][i]);
+                }
+            }
+            for i in 0..W {
+                let term = (column[i] * l[i]).abs();
+                largest[i] = if term > largest[i] { term } else { largest[i] };
+            }
+            *column = l;
+            column[0] = inverse;
         }
-        for i in 0..W {
-            let term = (column[i] * l[i]).abs();
-            largest[i] = if term > largest[i] { term } else { largest[i] };
-        }
-        *column = l;
-        column[0] = inverse;
+        let largest = largest.iter().fold(0.0, |m: f64, v| m.max(*v));
+        Pivots { negative, perturbed, largest }
     }
-    let largest = largest.iter().fold(0.0, |m: f64, v| m.max(*v));
-    Pivots { negative, perturbed, largest }
 }
 
 fn factor_general(kd: usize, columns: &mut [f64], n: usize, floor: f64) -> Pivots {
@@ -115,29 +132,60 @@ fn factor_general(kd: usize, columns: &mut [f64], n: usize, floor: f64) -> Pivot
 }
 
 fn solve_fixed<const K: usize, const W: usize>(columns: &[f64], n: usize, x: &mut [f64]) {
-    let (columns, _) = columns.as_chunks::<W>();
-    let columns = &columns[..n];
-    // L z = b: the next W unknowns wait in registers.
-    let Some(first) = x.first_chunk::<K>() else { return };
-    let mut waiting = [0.0; W];
-    waiting[..K].copy_from_slice(first);
-    for (j, column) in columns.iter().enumerate() {
-        waiting[K] = x[j + K];
-        let z = waiting[0];
-        x[j] = z * column[0];
-        for i in 0..K {
-            waiting[i] = waiting[i + 1] - column[i + 1] * z;
+    kernel::run(Solve::<K, W> { columns, n, x });
+}
+
+struct Solve<'a, const K: usize, const W: usize> {
+    columns: &'a [f64],
+    n: usize,
+    x: &'a mut [f64],
+}
+
+impl<const K: usize, const W: usize> Kernel for Solve<'_, K, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        let Solve { columns, n, x } = self;
+        let x = &mut x[..n];
+        let (columns, _) = columns.as_chunks::<W>();
+        let columns = &columns[..n];
+        // The nearest unknown, just computed, comes last: nothing else waits for it. L z = b first.
+        let mut recent = [0.0; K];
+        for j in 0..n {
+            let mut z = x[j];
+            if j >= K {
+                for i in (1..W).rev() {
+                    z = A::mul_add(-columns[j - i][i], recent[i - 1], z);
+                }
+            } else {
+                for i in (1..=j).rev() {
+                    z = A::mul_add(-columns[j - i][i], recent[i - 1], z);
+                }
+            }
+            push(&mut recent, z);
+            x[j] = z * columns[j][0];
+        }
+        // Lᵀ x = D⁻¹ z; behind the end there is nothing
+        recent = [0.0; K];
+        for (column, x) in columns.iter().zip(x).rev() {
+            let mut s = *x;
+            for i in (1..W).rev() {
+                s = A::mul_add(-column[i], recent[i - 1], s);
+            }
+            push(&mut recent, s);
+            *x = s;
         }
     }
-    // Lᵀ x = D⁻¹ z, the nearest unknown last: it is the one just computed.
-    for (j, column) in columns.iter().enumerate().rev() {
-        let Some(segment) = x[j..].first_chunk_mut::<W>() else { break };
-        let mut s = segment[0];
-        for i in (1..W).rev() {
-            s -= column[i] * segment[i];
-        }
-        segment[0] = s;
+}
+
+/// Puts `x` first and forgets the last.
+#[inline(always)]
+fn push<const K: usize>(recent: &mut [f64; K], x: f64) {
+    for i in (1..K).rev() {
+        recent[i] = recent[i - 1];
     }
+    recent[0] = x;
 }
 
 fn solve_general(kd: usize, columns: &[f64], n: usize, x: &mut [f64]) {

@@ -34,6 +34,7 @@ mod complement;
 mod dense;
 mod eigen;
 mod half_plane;
+pub mod kernel;
 mod krylov;
 mod lanczos;
 mod ldlt;

@@ -112,6 +112,7 @@ impl SymmetricBand {
 
     /// Entries `(j, j), (j + 1, j), …` of the band, to be filled: `kd + 1` of them, fewer in the
     /// last columns.
+    #[inline]
     pub fn column_mut(&mut self, j: usize) -> &mut [f64] {
         let (start, length) = (j * (self.kd + 1), (self.kd + 1).min(self.n - j));
         &mut self.entries[start..start + length]

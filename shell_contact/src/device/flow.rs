@@ -13,6 +13,7 @@
 use super::{Device, Loading};
 use continuation::linalg::Arrow;
 use continuation::{EvalError, Matrix, NewtonError, NewtonSettings, newton};
+use std::f64::consts::PI;
 
 /// How closely the motion is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,6 +93,8 @@ const SHIFTED_ITERATIONS: usize = 60;
 const LEAST_SHIFT: f64 = 1e-12;
 /// The largest: no mode of a shell is softer by more than its own stiffness.
 const LARGEST_SHIFT: f64 = 1e3;
+/// Sums of two modes that are tried.
+const DIRECTIONS: usize = 8;
 /// Slopes that differ by less are those of two mirror images: at the distances of a departure other
 /// ones differ by the cubic term, a part of them.
 const EQUALLY_STEEP: f64 = 1e-6;
@@ -223,10 +226,13 @@ impl<P: Loading> Relaxation<P> {
             Ok(departure) => self.leave(problem, x, p, departure),
             // at a pitchfork the potential falls as the fourth power, less than the stiff
             // directions climb unless they give way
-            Err(_) => {
-                let departure = self.downwards(problem, x, p, Line::Curved)?;
-                self.leave(problem, x, p, departure)
-            }
+            Err(_) => match self.downwards(problem, x, p, Line::Curved) {
+                Ok(departure) => self.leave(problem, x, p, departure),
+                Err(error) => {
+                    let departure = self.between_two_modes(problem, x, p).ok_or(error)?;
+                    self.leave(problem, x, p, departure)
+                }
+            },
         }
     }
 
@@ -320,6 +326,46 @@ impl<P: Loading> Relaxation<P> {
             let size = length(problem, &self.mode, &mut self.work);
             self.mode.iter_mut().for_each(|m| *m /= size);
         }
+    }
+
+    /// The steepest departure among sums of the critical mode and the next one; the mode is that sum then.
+    ///
+    /// Two poles far from each other buckle at the same place to rounding, together or one against the
+    /// other: the critical mode is any sum of the two, and the potential falls along that of one pole.
+    fn between_two_modes(&mut self, problem: &P, x: &[f64], p: &[f64]) -> Option<Departure> {
+        let first = self.mode.clone();
+        for (k, m) in self.mode.iter_mut().enumerate() {
+            *m = ((7 * k) % 5) as f64 - 2.0; // no symmetry
+        }
+        for _ in 0..SHIFTED_ITERATIONS {
+            problem.metric(&self.mode, &mut self.work);
+            let along = dot(&self.work, &first);
+            self.mode.iter_mut().zip(&first).for_each(|(m, f)| *m -= along * f);
+            problem.metric(&self.mode, &mut self.work);
+            self.mode.copy_from_slice(&self.work);
+            self.hessian.solve(&mut self.mode);
+            let size = length(problem, &self.mode, &mut self.work);
+            self.mode.iter_mut().for_each(|m| *m /= size);
+        }
+        let second = self.mode.clone();
+        let sum = |mode: &mut [f64], k: usize| {
+            let (sin, cos) = (k as f64 * PI / DIRECTIONS as f64).sin_cos();
+            let both = first.iter().zip(&second);
+            mode.iter_mut().zip(both).for_each(|(m, (a, b))| *m = cos * a + sin * b);
+        };
+        let mut best: Option<(usize, Departure)> = None;
+        for k in 1..DIRECTIONS {
+            sum(&mut self.mode, k);
+            let Ok(departure) = self.downwards(problem, x, p, Line::Straight) else { continue };
+            // how steep it is does not depend on where it was measured: the slope grows as the square
+            let bend = |d: &Departure| d.distance * d.time;
+            if best.as_ref().is_none_or(|(_, best)| bend(&departure) < bend(best)) {
+                best = Some((k, departure));
+            }
+        }
+        let (k, departure) = best?;
+        sum(&mut self.mode, k);
+        Some(departure)
     }
 
     /// The sides of the critical mode to which the potential falls, the steeper first.

@@ -7,13 +7,14 @@
 //! It holds for states that vary slowly over a wave; it is no theorem.
 
 use crate::density::Coefficients;
-use crate::energy;
+use crate::energy::{self, Visitor};
 use crate::film::Potential;
 use crate::half::HalfMeridian;
 use crate::membrane::Membrane;
+use crate::meridian::{Cell, Place};
 use crate::scalar::{Lanes, Scalar, WIDTH};
 use continuation::EvalError;
-use std::cell::Cell;
+use continuation::linalg::kernel::Arithmetic;
 
 /// The largest such `n` over the meridian.
 pub(super) fn largest_wave<L: Membrane, F: Potential>(
@@ -23,8 +24,23 @@ pub(super) fn largest_wave<L: Membrane, F: Potential>(
     film: &F,
     c: &Coefficients,
 ) -> Result<f64, EvalError> {
-    let largest = Cell::new(0.0_f64);
-    energy::integrate(mesh, u, film.wall(c), |at, x| {
+    let mut largest = Largest { law, film, c, wave: 0.0 };
+    energy::visit(mesh, u, film.wall(c), &mut largest)?;
+    Ok(largest.wave)
+}
+
+struct Largest<'a, L, F> {
+    law: &'a L,
+    film: &'a F,
+    c: &'a Coefficients,
+    wave: f64,
+}
+
+impl<H, L: Membrane, F: Potential> Visitor<H> for Largest<'_, L, F> {
+    #[inline(always)]
+    fn cell<A: Arithmetic>(&mut self, cell: &Cell, x: &Place<Lanes>) {
+        let Largest { law, film, c, wave } = self;
+        let at = cell.site();
         let ([s, s1, _], [z, z1, _]) = (x.s, x.z);
         let q = s1 * s1 + z1 * z1;
         let hoop = s * at.csc;
@@ -41,11 +57,9 @@ pub(super) fn largest_wave<L: Membrane, F: Potential>(
             let k2 = (pull + (pull * pull + 4.0 * c.bending * soft).sqrt()) / (2.0 * c.bending);
             let n = s.0[l] * k2.sqrt();
             // NaN is kept: the scan then says that it is not certain
-            if n > largest.get() || n.is_nan() {
-                largest.set(n);
+            if n > *wave || n.is_nan() {
+                *wave = n;
             }
         }
-        Lanes::ZERO
-    })?;
-    Ok(largest.get())
+    }
 }

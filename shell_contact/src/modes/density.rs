@@ -15,7 +15,8 @@
 //!
 //! Both phases are quadratic forms in variables that are themselves polynomials in `n` of the nine
 //! numbers `p = (u, v, w, u', v', w', u'', v'', w'')`; expanding them gives five 9×9 matrices. In
-//! those of `n³` and `n⁴` no derivative takes part.
+//! those of `n³` and `n⁴` no derivative takes part. The expansion is written out: which entries are
+//! zero is the same at every point.
 
 use crate::bending::strain_jet;
 use crate::density::{self, Coefficients, Site};
@@ -27,20 +28,11 @@ use crate::scalar::Scalar;
 /// Powers of `n`, from 0.
 pub(super) const POWERS: usize = 5;
 
-/// Whether an entry is computed: its first field is not after the second. The others follow by
-/// symmetry.
-pub(super) fn is_kept(i: usize, j: usize) -> bool {
-    i % 3 <= j % 3
-}
-
-/// `Σ nᵏ H[k]` is the Hessian in `p`, both phases together, times the weight, where [`is_kept`]
-/// says so.
+/// `Σ nᵏ H[k]` is the Hessian in `p`, both phases together, times the weight; of two fields the rows of the first
+/// of them in the order `u, v, w`.
 pub(super) type Polynomial<T> = [[[T; 9]; 9]; POWERS];
 
-/// `(index in p, power of n, factor)`.
-type Term = (usize, usize, f64);
-
-// variables of phase c
+/// Variables of phase c: `B = u + nv`, `U … W2` the fields and their derivatives, `R = n²u + nv`, `X = n²w`.
 const B: usize = 0;
 const U: usize = 1;
 const U1: usize = 2;
@@ -48,23 +40,11 @@ const U2: usize = 3;
 const W: usize = 4;
 const W1: usize = 5;
 const W2: usize = 6;
-/// `n²u + nv`
 const R: usize = 7;
-/// `n²w`
 const X: usize = 8;
-const COSINE: [&[Term]; 9] = [
-    &[(0, 0, 1.0), (1, 1, 1.0)],
-    &[(0, 0, 1.0)],
-    &[(3, 0, 1.0)],
-    &[(6, 0, 1.0)],
-    &[(2, 0, 1.0)],
-    &[(5, 0, 1.0)],
-    &[(8, 0, 1.0)],
-    &[(0, 2, 1.0), (1, 1, 1.0)],
-    &[(2, 2, 1.0)],
-];
 
-// variables of phase s
+/// Variables of phase s: `A = −(nu + v)`, `D = −nw` and their derivatives, `V … V2` those of `v`,
+/// `E = A − nB = −2nu − (1 + n²)v`.
 const A: usize = 0;
 const D: usize = 1;
 const A1: usize = 2;
@@ -72,23 +52,13 @@ const D1: usize = 3;
 const V: usize = 4;
 const V1: usize = 5;
 const V2: usize = 6;
-/// `A − nB = −2nu − (1 + n²)v`
 const E: usize = 7;
-const SINE: [&[Term]; 8] = [
-    &[(1, 0, -1.0), (0, 1, -1.0)],
-    &[(2, 1, -1.0)],
-    &[(4, 0, -1.0), (3, 1, -1.0)],
-    &[(5, 1, -1.0)],
-    &[(1, 0, 1.0)],
-    &[(4, 0, 1.0)],
-    &[(7, 0, 1.0)],
-    &[(0, 1, -2.0), (1, 0, -1.0), (1, 2, -1.0)],
-];
 
-/// A quadratic form by its Hessian.
+/// A quadratic form by its Hessian, whose upper triangle is kept.
 struct Quadratic<T, const N: usize>([[T; N]; N]);
 
 impl<T: Scalar, const N: usize> Quadratic<T, N> {
+    #[inline(always)]
     fn zero() -> Self {
         Quadratic([[T::constant(0.0); N]; N])
     }
@@ -99,37 +69,120 @@ impl<T: Scalar, const N: usize> Quadratic<T, N> {
         for &(a, fa) in f {
             let cf = c * fa;
             for &(b, gb) in g {
-                let term = cf * gb;
-                self.0[a][b] = self.0[a][b] + term;
-                self.0[b][a] = self.0[b][a] + term;
+                let term = if a == b { cf * gb * 2.0 } else { cf * gb };
+                let entry = &mut self.0[a.min(b)][a.max(b)];
+                *entry = *entry + term;
             }
         }
     }
 
-    /// Adds the form, in `p`, to the upper triangle of the polynomial. Which entries are zero is
-    /// the same at every point, so that passing over them costs no time.
+    /// An entry.
     #[inline(always)]
-    fn expand(&self, variables: &[&[Term]; N], out: &mut Polynomial<T>) {
-        for a in 0..N {
-            for b in 0..N {
-                let entry = self.0[a][b];
-                if entry.is_zero() {
-                    continue;
-                }
-                for &(i, power, factor) in variables[a] {
-                    for &(j, other, times) in variables[b] {
-                        if is_kept(i, j) {
-                            let h = &mut out[power + other][i][j];
-                            *h = *h + entry * (factor * times);
-                        }
-                    }
-                }
-            }
-        }
+    fn get(&self, a: usize, b: usize) -> T {
+        self.0[a.min(b)][a.max(b)]
     }
 }
 
-/// Sets `out` to the second variation at a point; `excess` is `P_G − P_A`.
+/// The fields' indices in `p`.
+mod p {
+    pub(super) const U: usize = 0;
+    pub(super) const V: usize = 1;
+    pub(super) const W: usize = 2;
+    pub(super) const U1: usize = 3;
+    pub(super) const V1: usize = 4;
+    pub(super) const W1: usize = 5;
+    pub(super) const U2: usize = 6;
+    pub(super) const V2: usize = 7;
+    pub(super) const W2: usize = 8;
+}
+
+/// Sets both entries of a field with itself.
+#[inline(always)]
+fn set<T: Copy>(h: &mut [[T; 9]; 9], i: usize, j: usize, value: T) {
+    h[i][j] = value;
+    h[j][i] = value;
+}
+
+/// Both phases in `p`: `u` is `B + U + n²R` of phase c and `−nA − 2nE` of phase s, `v` is `n(B + R)` and
+/// `V − A − (1 + n²)E`, `w` is `W + n²X` and `−nD`; `u' = U1 − nA1`, `v' = V1 − A1`, `w' = W1 − nD1`.
+#[inline(always)]
+fn expand<T: Scalar>(
+    cosine: &Quadratic<T, 9>,
+    sine: &Quadratic<T, 8>,
+    [h0, h1, h2, h3, h4]: &mut Polynomial<T>,
+) {
+    let c = |a, b| cosine.get(a, b);
+    let s = |a, b| sine.get(a, b);
+
+    // u with itself
+    h0[p::U][p::U] = c(B, B) + c(B, U) * 2.0;
+    h2[p::U][p::U] = c(B, R) * 2.0 + s(A, A) + s(A, E) * 4.0;
+    h4[p::U][p::U] = c(R, R);
+    set(h0, p::U, p::U1, c(B, U1));
+    set(h2, p::U, p::U1, c(U1, R) + s(A, A1));
+    set(h2, p::U, p::U2, c(U2, R));
+    h0[p::U1][p::U1] = c(U1, U1);
+    h2[p::U1][p::U1] = s(A1, A1);
+    set(h0, p::U1, p::U2, c(U1, U2));
+    h0[p::U2][p::U2] = c(U2, U2);
+
+    // w with itself
+    h0[p::W][p::W] = c(W, W);
+    h2[p::W][p::W] = s(D, D);
+    h4[p::W][p::W] = c(X, X);
+    set(h0, p::W, p::W1, c(W, W1));
+    set(h2, p::W, p::W1, c(W1, X) + s(D, D1));
+    set(h2, p::W, p::W2, c(W2, X));
+    h0[p::W1][p::W1] = c(W1, W1);
+    h2[p::W1][p::W1] = s(D1, D1);
+    set(h0, p::W1, p::W2, c(W1, W2));
+    h0[p::W2][p::W2] = c(W2, W2);
+
+    // v with itself
+    h0[p::V][p::V] = s(A, A) + (s(A, E) - s(A, V)) * 2.0;
+    h2[p::V][p::V] = c(B, B) + c(B, R) * 2.0 + c(R, R) + s(A, E) * 2.0;
+    set(h0, p::V, p::V1, s(A, A1) - s(A, V1));
+    set(h0, p::V, p::V2, -s(A, V2));
+    h0[p::V1][p::V1] = s(A1, A1) - s(A1, V1) * 2.0 + s(V1, V1);
+
+    // u with w
+    h0[p::U][p::W] = c(B, W);
+    h2[p::U][p::W] = c(B, X) + s(A, D) + s(D, E) * 2.0;
+    h4[p::U][p::W] = c(R, X);
+    h0[p::U][p::W1] = c(B, W1) + c(U, W1);
+    h2[p::U][p::W1] = c(W1, R) + s(A, D1);
+    h2[p::U][p::W2] = c(W2, R);
+    h0[p::U1][p::W] = c(U1, W);
+    h2[p::U1][p::W] = c(U1, X) + s(A1, D);
+    h0[p::U1][p::W1] = c(U1, W1);
+    h2[p::U1][p::W1] = s(A1, D1);
+    h0[p::U1][p::W2] = c(U1, W2);
+    h2[p::U2][p::W] = c(U2, X);
+    h0[p::U2][p::W1] = c(U2, W1);
+    h0[p::U2][p::W2] = c(U2, W2);
+
+    // u with v
+    h1[p::U][p::V] = c(B, B) + c(B, U) + c(B, R) + s(A, A) - s(A, V) + s(A, E) * 3.0;
+    h3[p::U][p::V] = c(B, R) + c(R, R) + s(A, E);
+    h1[p::U][p::V1] = s(A, A1) - s(A, V1);
+    h1[p::U][p::V2] = -s(A, V2);
+    h1[p::U1][p::V] = c(B, U1) + c(U1, R) + s(A, A1);
+    h1[p::U1][p::V1] = s(A1, A1) - s(A1, V1);
+    h1[p::U2][p::V] = c(U2, R);
+
+    // v with w
+    h1[p::V][p::W] = c(B, W) + s(A, D) - s(D, V) + s(D, E);
+    h3[p::V][p::W] = c(B, X) + c(R, X) + s(D, E);
+    h1[p::V][p::W1] = c(B, W1) + c(W1, R) + s(A, D1);
+    h1[p::V][p::W2] = c(W2, R);
+    h1[p::V1][p::W] = s(A1, D) - s(D, V1);
+    h1[p::V1][p::W1] = s(A1, D1) - s(D1, V1);
+    h1[p::V2][p::W] = -s(D, V2);
+}
+
+/// Sets `out` to the second variation at a point; `excess` is `P_G − P_A`. Entries that are zero everywhere are
+/// not written.
+#[inline(always)]
 pub(super) fn second_variation<T: Scalar, L: Membrane, F: Potential>(
     law: &L,
     film: &F,
@@ -139,17 +192,11 @@ pub(super) fn second_variation<T: Scalar, L: Membrane, F: Potential>(
     x: &Place<T>,
     out: &mut Polynomial<T>,
 ) {
-    for h in out[..3].iter_mut().flatten().flatten() {
-        *h = T::constant(0.0);
-    }
-    // of the higher powers no derivative takes part
-    for row in out[3..].iter_mut().flat_map(|h| &mut h[..3]) {
-        row[..3].fill(T::constant(0.0));
-    }
-    cosine(law, film, c, excess, at, x).expand(&COSINE, out);
-    sine(law, film, c, excess, at, x).expand(&SINE, out);
+    let (cosine, sine) = (cosine(law, film, c, excess, at, x), sine(law, film, c, excess, at, x));
+    expand(&cosine, &sine, out);
 }
 
+#[inline(always)]
 fn cosine<T: Scalar, L: Membrane, F: Potential>(
     law: &L,
     film: &F,
@@ -180,7 +227,6 @@ fn cosine<T: Scalar, L: Membrane, F: Potential>(
         (W2, W2, h.z2_z2),
     ] {
         q.0[a][b] = value;
-        q.0[b][a] = value;
     }
     let ([s, s1, s2], [_, z1, z2]) = (x.s, x.z);
     let unit = T::constant(1.0);
@@ -213,6 +259,7 @@ fn cosine<T: Scalar, L: Membrane, F: Potential>(
     q
 }
 
+#[inline(always)]
 fn sine<T: Scalar, L: Membrane, F: Potential>(
     law: &L,
     film: &F,
@@ -296,6 +343,10 @@ mod tests {
     use num_dual::HyperDual64;
 
     type H = HyperDual64;
+
+    fn is_kept(i: usize, j: usize) -> bool {
+        i % 3 <= j % 3
+    }
 
     fn cross(a: [H; 3], b: [H; 3]) -> [H; 3] {
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

@@ -5,16 +5,18 @@
 //! elsewhere. Elements that meet no end condition are summed up to three such bands, whatever the
 //! class; those at the ends are kept one by one.
 
-use super::density::{POWERS, second_variation};
+use super::density::{POWERS, Polynomial, second_variation};
 use super::ends::{Ends, FIELDS, HALF_BANDWIDTH, Slot};
-use crate::density::{Coefficients, Site};
+use crate::density::Coefficients;
+use crate::energy::{self, Visitor, combine};
 use crate::film::Potential;
 use crate::half::HalfMeridian;
 use crate::membrane::Membrane;
-use crate::meridian::{Cell, Mesh};
+use crate::meridian::{Cell, Mesh, Place};
 use crate::scalar::Lanes;
-use continuation::Matrix;
 use continuation::linalg::SymmetricBand;
+use continuation::linalg::kernel::Arithmetic;
+use continuation::{EvalError, Matrix};
 
 /// A block: function of the first field by function of the second.
 type Block<T> = [[T; 4]; 4];
@@ -201,72 +203,119 @@ pub(super) fn elements<H: HalfMeridian, L: Membrane, F: Potential>(
     excess: f64,
     pass: &mut impl FnMut(usize, &Element),
 ) {
-    let mut hessian = [[[Lanes::ZERO; 9]; 9]; POWERS];
-    let mut lanes = [[Lanes::ZERO; 4]; 4];
-    for e in 0..half.elements() {
-        let mut element = Element::ZERO;
-        let local = half.local(u, e);
-        for cell in half.cells(e) {
-            let site = Site { weight: cell.weight, area: cell.weight * cell.sin, csc: cell.csc };
-            let place = cell.place(&local);
-            second_variation(law, film, c, excess, &site, &place, &mut hessian);
-            for (pair, &(f, g)) in EVEN.iter().enumerate() {
-                for k in 0..2 {
-                    if f == g {
-                        own_block(cell, &hessian[2 * k], f, &mut lanes);
-                    } else {
-                        block(cell, &hessian[2 * k], f, g, &mut lanes);
-                    }
-                    add(&lanes, f == g, &mut element.even[k][pair]);
+    let hessian = [[[Lanes::ZERO; 9]; 9]; POWERS];
+    let mut variation = Variation { law, film, c, excess, hessian, element: Element::ZERO, pass };
+    energy::visit_unchecked(half, u, &mut variation);
+}
+
+/// The second variation, summed up by element.
+struct Variation<'a, L, F, P> {
+    law: &'a L,
+    film: &'a F,
+    c: &'a Coefficients,
+    excess: f64,
+    hessian: Polynomial<Lanes>,
+    element: Element,
+    pass: &'a mut P,
+}
+
+impl<H, L, F, P> Visitor<H> for Variation<'_, L, F, P>
+where
+    L: Membrane,
+    F: Potential,
+    P: FnMut(usize, &Element),
+{
+    #[inline(always)]
+    fn begin(&mut self, _half: &H, _e: usize) {
+        self.element = Element::ZERO;
+    }
+
+    #[inline(always)]
+    fn cell<A: Arithmetic>(&mut self, cell: &Cell, place: &Place<Lanes>) {
+        let Variation { law, film, c, excess, hessian, element, .. } = self;
+        second_variation(*law, *film, c, *excess, &cell.site(), place, hessian);
+        let mut lanes = [[Lanes::ZERO; 4]; 4];
+        for (pair, &(f, g)) in EVEN.iter().enumerate() {
+            for k in 0..2 {
+                if f == g {
+                    own_block::<A>(cell, &hessian[2 * k], f, &mut lanes);
+                } else {
+                    block::<A>(cell, &hessian[2 * k], f, g, &mut lanes);
                 }
-                values(cell, hessian[4][f][g], &mut lanes);
-                add(&lanes, f == g, &mut element.even[2][pair]);
+                add(&lanes, &mut element.even[k][pair]);
             }
-            for (pair, &(f, g)) in ODD.iter().enumerate() {
-                block(cell, &hessian[1], f, g, &mut lanes);
-                add(&lanes, false, &mut element.odd[0][pair]);
-                values(cell, hessian[3][f][g], &mut lanes);
-                add(&lanes, false, &mut element.odd[1][pair]);
-            }
+            values(cell, hessian[4][f][g], &mut lanes);
+            add(&lanes, &mut element.even[2][pair]);
         }
-        pass(e, &element);
+        for (pair, &(f, g)) in ODD.iter().enumerate() {
+            block::<A>(cell, &hessian[1], f, g, &mut lanes);
+            add(&lanes, &mut element.odd[0][pair]);
+            values(cell, hessian[3][f][g], &mut lanes);
+            add(&lanes, &mut element.odd[1][pair]);
+        }
+    }
+
+    #[inline(always)]
+    fn end(&mut self, _half: &H, e: usize) -> Result<(), EvalError> {
+        (self.pass)(e, &self.element);
+        Ok(())
     }
 }
 
-/// `Bᵀ H B` for a pair of fields at four Gauss points; kept apart for the vectoriser.
-#[inline(never)]
-fn block(cell: &Cell, h: &[[Lanes; 9]; 9], f: usize, g: usize, out: &mut Block<Lanes>) {
-    let n = &cell.basis;
+/// `Bᵀ H B` for a pair of fields at four Gauss points.
+#[inline(always)]
+fn block<A: Arithmetic>(
+    cell: &Cell,
+    h: &[[Lanes; 9]; 9],
+    f: usize,
+    g: usize,
+    out: &mut Block<Lanes>,
+) {
     for j in 0..4 {
-        let mut half = [Lanes::ZERO; 3];
-        for d in 0..3 {
-            let row = &h[3 * d + f];
-            half[d] = row[g] * n[0][j] + row[3 + g] * n[1][j] + row[6 + g] * n[2][j];
-        }
+        let half = applied::<A>(cell, h, f, g, j);
         for i in 0..4 {
-            out[i][j] = n[0][i] * half[0] + n[1][i] * half[1] + n[2][i] * half[2];
+            out[i][j] = combine::<A>(basis(cell, i), half);
         }
     }
 }
 
 /// The same for a field with itself, upper triangle.
-#[inline(never)]
-fn own_block(cell: &Cell, h: &[[Lanes; 9]; 9], f: usize, out: &mut Block<Lanes>) {
-    let n = &cell.basis;
+#[inline(always)]
+fn own_block<A: Arithmetic>(cell: &Cell, h: &[[Lanes; 9]; 9], f: usize, out: &mut Block<Lanes>) {
     for j in 0..4 {
-        let mut half = [Lanes::ZERO; 3];
-        for d in 0..3 {
-            let row = &h[3 * d + f];
-            half[d] = row[f] * n[0][j] + row[3 + f] * n[1][j] + row[6 + f] * n[2][j];
-        }
+        let half = applied::<A>(cell, h, f, f, j);
         for i in 0..=j {
-            out[i][j] = n[0][i] * half[0] + n[1][i] * half[1] + n[2][i] * half[2];
+            out[i][j] = combine::<A>(basis(cell, i), half);
         }
     }
 }
 
+/// `H B` for function `j` of the second field.
+#[inline(always)]
+fn applied<A: Arithmetic>(
+    cell: &Cell,
+    h: &[[Lanes; 9]; 9],
+    f: usize,
+    g: usize,
+    j: usize,
+) -> [Lanes; 3] {
+    let n = basis(cell, j);
+    let mut out = [Lanes::ZERO; 3];
+    for d in 0..3 {
+        let row = &h[3 * d + f];
+        out[d] = combine::<A>(n, [row[g], row[3 + g], row[6 + g]]);
+    }
+    out
+}
+
+/// Function `j` and its derivatives.
+#[inline(always)]
+fn basis(cell: &Cell, j: usize) -> [Lanes; 3] {
+    [cell.basis[0][j], cell.basis[1][j], cell.basis[2][j]]
+}
+
 /// The same where no derivative takes part: so it is for `n³` and `n⁴`.
-#[inline(never)]
+#[inline(always)]
 fn values(cell: &Cell, h: Lanes, out: &mut Block<Lanes>) {
     let n = &cell.basis[0];
     for j in 0..4 {
@@ -278,11 +327,9 @@ fn values(cell: &Cell, h: Lanes, out: &mut Block<Lanes>) {
 }
 
 #[inline(always)]
-fn add(lanes: &Block<Lanes>, upper: bool, out: &mut Block<f64>) {
+fn add(lanes: &Block<Lanes>, out: &mut Block<f64>) {
     for i in 0..4 {
-        for j in if upper { i } else { 0 }..4 {
-            out[i][j] += lanes[i][j].sum();
-        }
+        out[i] = (Lanes(out[i]) + Lanes::sums(lanes[i])).0;
     }
 }
 

@@ -9,6 +9,7 @@ use super::LEAST_PIVOT;
 use super::elements::{AT_EQUATOR, Column, Elements, ROWS, unit_pivots};
 use super::ends::{Ends, FIELDS};
 use continuation::linalg::MAX_GROWTH;
+use continuation::linalg::kernel::{self, Arithmetic, Kernel};
 
 /// Columns that the elements next to the equator contribute to.
 const LAST: usize = FIELDS * (AT_EQUATOR + 2);
@@ -89,38 +90,54 @@ impl Elimination {
 
 /// Eliminates the first `count` columns, at least [`LAST`] fewer than there are.
 fn eliminate(columns: &mut [Column], count: usize, scale: &[f64]) -> Pivots {
-    let mut pivots = Pivots::default();
-    let mut largest = [0.0; ROWS];
-    let mut smallest = f64::INFINITY;
-    for j in 0..count {
-        let Some((column, next)) = columns[j..].split_first_mut() else { break };
-        let (Some(next), Some(scale)) =
-            (next.first_chunk_mut::<{ ROWS - 1 }>(), scale[j..].first_chunk::<ROWS>())
-        else {
-            break;
-        };
-        let d = column[0];
-        pivots.negative += usize::from(d < 0.0);
-        // not `min`: it would pass over a pivot that is not a number
-        let size = d.abs() * scale[0];
-        smallest = if size > smallest { smallest } else { size };
-        let inverse = 1.0 / d;
-        let mut l = [1.0; ROWS];
-        for i in 1..ROWS {
-            l[i] = column[i] * inverse;
-        }
-        for k in 1..ROWS {
-            let t = column[k];
-            for i in 0..ROWS - k {
-                next[k - 1][i] -= t * l[k + i];
+    kernel::run(Columns { columns, count, scale })
+}
+
+struct Columns<'a> {
+    columns: &'a mut [Column],
+    count: usize,
+    scale: &'a [f64],
+}
+
+impl Kernel for Columns<'_> {
+    type Output = Pivots;
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) -> Pivots {
+        let Columns { columns, count, scale } = self;
+        let mut pivots = Pivots::default();
+        let mut largest = [0.0; ROWS];
+        let mut smallest = f64::INFINITY;
+        for j in 0..count {
+            let Some((column, next)) = columns[j..].split_first_mut() else { break };
+            let (Some(next), Some(scale)) =
+                (next.first_chunk_mut::<{ ROWS - 1 }>(), scale[j..].first_chunk::<ROWS>())
+            else {
+                break;
+            };
+            let d = column[0];
+            pivots.negative += usize::from(d < 0.0);
+            // not `min`: it would pass over a pivot that is not a number
+            let size = d.abs() * scale[0];
+            smallest = if size > smallest { smallest } else { size };
+            let inverse = 1.0 / d;
+            let mut l = [1.0; ROWS];
+            for i in 1..ROWS {
+                l[i] = column[i] * inverse;
+            }
+            for k in 1..ROWS {
+                let t = column[k];
+                for i in 0..ROWS - k {
+                    next[k - 1][i] = A::mul_add(-t, l[k + i], next[k - 1][i]);
+                }
+            }
+            for i in 0..ROWS {
+                let term = (column[i] * l[i]).abs() * scale[i];
+                largest[i] = if term > largest[i] { term } else { largest[i] };
             }
         }
-        for i in 0..ROWS {
-            let term = (column[i] * l[i]).abs() * scale[i];
-            largest[i] = if term > largest[i] { term } else { largest[i] };
-        }
+        let largest = largest.iter().fold(0.0, |m: f64, x| m.max(*x));
+        pivots.doubtful = !(smallest >= LEAST_PIVOT && largest <= MAX_GROWTH);
+        pivots
     }
-    let largest = largest.iter().fold(0.0, |m: f64, x| m.max(*x));
-    pivots.doubtful = !(smallest >= LEAST_PIVOT && largest <= MAX_GROWTH);
-    pivots
 }

@@ -20,8 +20,8 @@ pub use mesh::DEFAULT_GRADING;
 pub use observe::{NAMES, RingObservation, RingProfile};
 
 use crate::contact::with_law;
-use crate::density::{self, Coefficients};
-use crate::energy;
+use crate::density::Coefficients;
+use crate::energy::{self, gradients};
 use crate::film::NoFilm;
 use crate::gas::Gas;
 use crate::membrane::Membrane;
@@ -239,9 +239,8 @@ impl RingLoadProblem {
         for out in out.iter_mut() {
             *out *= -excess;
         }
-        energy::add_gradient(mesh, x, c.plate, out, |at, x| {
-            density::gradient(law, &NoFilm, &c, at, x)
-        })?;
+        let gradient = gradients::Energy { law, film: &NoFilm, c: &c };
+        energy::add_gradient(mesh, x, c.plate, out, &gradient)?;
         add_ring(ring, u, c.bending * q[0], moment, alpha, r);
         Ok(())
     }
@@ -329,9 +328,8 @@ impl Problem for RingLoadProblem {
                 }
             }
             parameter::BENDING => {
-                energy::add_gradient(mesh, x, c.plate, shell, |at, x| {
-                    density::bending_gradient(c.poisson, at, x)
-                })?;
+                let gradient = gradients::Bending { poisson: c.poisson };
+                energy::add_gradient(mesh, x, c.plate, shell, &gradient)?;
                 for at in &ring {
                     shell[at.unknown] += q[0] * at.height[0];
                 }

@@ -7,13 +7,12 @@
 
 use super::{Half, Side, TwoPlatesProblem, parameter};
 use crate::contact::{POISSON_RATIO, with_law};
-use crate::density::{self, Coefficients, Parts};
-use crate::energy;
+use crate::density::{Coefficients, Parts};
+use crate::energy::{self, gradients};
 use crate::film::{Potential, Wall};
 use crate::gas::Gas;
 use crate::membrane::{Constant, Membrane};
 use crate::plate::{self, Variable};
-use crate::scalar::{Lanes, Scalar};
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId};
 use std::f64::consts::PI;
@@ -128,12 +127,10 @@ impl TwoPlatesProblem {
         r: &mut [f64],
     ) -> Result<(), EvalError> {
         let ([top, bottom], (upper, lower)) = (self.halves(), &self.potentials);
-        energy::add_gradient(&top, u, upper.wall(above), r, |at, x| {
-            density::gradient(law, upper, above, at, x)
-        })?;
-        energy::add_gradient(&bottom, u, lower.wall(below), r, |at, x| {
-            density::gradient(law, lower, below, at, x)
-        })
+        let gradient = gradients::Energy { law, film: upper, c: above };
+        energy::add_gradient(&top, u, upper.wall(above), r, &gradient)?;
+        let gradient = gradients::Energy { law, film: lower, c: below };
+        energy::add_gradient(&bottom, u, lower.wall(below), r, &gradient)
     }
 
     /// The gradient of the energy in `r`, unless that is empty, and its Hessian in `j`.
@@ -169,14 +166,19 @@ impl TwoPlatesProblem {
         which: ParamId,
         out: &mut [f64],
     ) -> Result<(), EvalError> {
-        let half_volume = 0.5 * self.volume_gradient(u, out)?;
-        let by_excess = match which {
-            parameter::PRESSURE => gas.excess_by_ambient(half_volume),
-            parameter::SURFACE_TENSION => gas.excess_by_surface_tension(half_volume),
-            parameter::GAS_EXPONENT => gas.excess_by_exponent(half_volume),
-            _ => 0.0,
+        let by_excess: Option<fn(&Gas, f64) -> f64> = match which {
+            parameter::PRESSURE => Some(Gas::excess_by_ambient),
+            parameter::SURFACE_TENSION => Some(Gas::excess_by_surface_tension),
+            parameter::GAS_EXPONENT => Some(Gas::excess_by_exponent),
+            _ => None,
         };
-        out.iter_mut().for_each(|out| *out *= -by_excess);
+        if let Some(by_excess) = by_excess {
+            let factor = -by_excess(gas, 0.5 * self.volume_gradient(u, out)?);
+            out.iter_mut().for_each(|out| *out *= factor);
+        } else {
+            self.volume(u)?;
+            out.fill(0.0);
+        }
         let (halves, (upper, lower)) = (self.halves(), &self.potentials);
         let walls = self.walls(c);
         for (k, (half, c)) in halves.iter().zip(c).enumerate() {
@@ -184,14 +186,11 @@ impl TwoPlatesProblem {
                 (Some(by), _) if k == 0 => plate::add_gradient_by(half, upper, u, c, by, out)?,
                 (Some(by), _) => plate::add_gradient_by(half, lower, u, c, by, out)?,
                 (None, parameter::BENDING) => {
-                    energy::add_gradient(half, u, walls[k], out, |at, x| {
-                        density::bending_gradient(c.poisson, at, x)
-                    })?;
+                    let gradient = gradients::Bending { poisson: c.poisson };
+                    energy::add_gradient(half, u, walls[k], out, &gradient)?;
                 }
                 (None, parameter::SURFACE_TENSION) => {
-                    energy::add_gradient(half, u, walls[k], out, |at, x| {
-                        density::area_gradient(Lanes::constant(1.0), Lanes::ZERO, at, x)
-                    })?;
+                    energy::add_gradient(half, u, walls[k], out, &gradients::Area)?;
                 }
                 (None, parameter::POISSON) => {
                     self.add_gradient_by_constant(half, u, c, walls[k], Constant::Poisson, out)?;
@@ -216,9 +215,8 @@ impl TwoPlatesProblem {
         out: &mut [f64],
     ) -> Result<(), EvalError> {
         with_law!(c.material(self.shell.law), |law| {
-            energy::add_gradient(half, u, wall, out, |at, x| {
-                density::material_gradient(&law, constant, c, at, x)
-            })
+            let gradient = gradients::Material { law: &law, constant, c };
+            energy::add_gradient(half, u, wall, out, &gradient)
         })
     }
 

@@ -1,0 +1,107 @@
+//! What the estimates of the mesh's error say against meshes that are finer.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests")]
+
+mod support;
+
+use continuation::{EventKind, Settings};
+use shell_contact::discretisation::{Refined, Shift};
+use shell_contact::spline::Component;
+use shell_contact::{ContactBranch, ContactProblem, Law, trace_contact};
+use std::ops::ControlFlow;
+use support::contact;
+
+/// Kinds of special points, where they are, the force there, and what is said of both.
+type Found = Vec<(EventKind, f64, f64, Shift)>;
+
+fn trace(problem: &ContactProblem, end: f64) -> ContactBranch {
+    let settings = Settings { target: Some(end), max_step: Some(0.02), ..Settings::default() };
+    trace_contact(problem, 1.3, settings, &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+fn special_points(elements: usize, law: Law, groups: [f64; 6], end: f64) -> Found {
+    let problem = contact(elements, law, groups);
+    let branch = trace(&problem, end).branch;
+    let mut refined = Refined::new(&problem).unwrap();
+    let of = |event: &continuation::Event| {
+        let point = &branch.points[event.point];
+        let p = problem.parameters_at(event.p);
+        let shift = refined.shift(&point.u, &p, Some(&event.kind)).unwrap().unwrap();
+        (event.kind.clone(), event.p, point.observables[0], shift)
+    };
+    branch.events.iter().map(of).collect()
+}
+
+fn agree(what: &str, estimate: Option<f64>, moved: f64, rounding: f64) {
+    let Some(estimate) = estimate else { return };
+    let within = estimate < 2.0 * moved && moved < 2.0 * estimate;
+    assert!(within || (moved - estimate).abs() < rounding, "{what}: {estimate:e}, not {moved:e}");
+}
+
+const FIG12: [f64; 6] = [3e-5, 3e-3, 2e-3, 1.0 / 30.0, 0.0, 1.07];
+
+/// Special points move to those of a mesh four times as fine by what was estimated, within a factor of two.
+#[test]
+fn special_points_move_as_estimated() {
+    let stiff = [1e-3, 1e-2, 5e-3, 0.05, 0.02, 1.4];
+    for (law, groups, end, elements, count) in [
+        (Law::Hooke, FIG12, 0.7, 150, 8),
+        (Law::Hooke, FIG12, 0.7, 400, 8),
+        (Law::Skalak, FIG12, 0.75, 200, 8),
+        (Law::MooneyRivlin { b: 0.4 }, stiff, 0.7, 60, 2),
+    ] {
+        let found = special_points(elements, law, groups, end);
+        let finer = special_points(4 * elements, law, groups, end);
+        assert_eq!((found.len(), finer.len()), (count, count));
+        for ((kind, z0, force, shift), (again, z0_finer, force_finer, _)) in
+            found.iter().zip(&finer)
+        {
+            assert_eq!(kind, again);
+            let what = format!("{elements} elements, {kind}");
+            agree(&what, shift.z0, (z0 - z0_finer).abs(), 1e-11);
+            agree(&what, shift.force, (force - force_finer).abs(), 1e-9);
+            assert!(shift.z0.is_some() || shift.force.is_some());
+        }
+    }
+}
+
+/// The force at a given plate distance too, on the graded mesh and on either part of the branch.
+#[test]
+fn forces_change_as_estimated() {
+    let of = |elements: usize| contact(elements, Law::Hooke, FIG12);
+    let (problem, finer) = (of(200), of(800));
+    let branch = trace(&problem, 0.7).branch;
+    let mut refined = Refined::new(&problem).unwrap();
+    let mut seen = 0;
+    for point in branch.points.iter().step_by(11).filter(|point| point.event.is_none()) {
+        let p = problem.parameters_at(point.p);
+        let shift = refined.shift(&point.u, &p, None).unwrap().unwrap();
+        // the same state on the finer mesh, from the spline's values
+        let mut u = start_on(&finer, &problem, &point.u);
+        let newton = continuation::NewtonSettings::default();
+        if continuation::newton(&finer, &mut u, &p, &newton).is_err() {
+            continue;
+        }
+        let force = finer.observation(&u, &p).unwrap().force;
+        let what = format!("z0 = {}", point.p);
+        agree(&what, shift.force, (force - point.observables[0]).abs(), 1e-9);
+        seen += 1;
+    }
+    assert!(seen > 10);
+}
+
+/// Coefficients on another mesh that interpolate nothing but are near: the spline's own values at the knots.
+fn start_on(to: &ContactProblem, from: &ContactProblem, u: &[f64]) -> Vec<f64> {
+    let knots = to.mesh().knots();
+    let mut out = to.initial_state();
+    for j in 0..=knots.elements() {
+        let s = knots.at(j);
+        let place = from.mesh().place(u, s);
+        let values = [place.s[0] - s.sin(), place.z[0] - s.cos()];
+        for (component, value) in [Component::U, Component::W].into_iter().zip(values) {
+            if let Some((i, sign)) = knots.slot(component, j as isize) {
+                out[i] = sign * value;
+            }
+        }
+    }
+    out
+}
