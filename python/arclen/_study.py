@@ -279,7 +279,8 @@ class CaseEvent(CasePoint, Event):
     """A special point of a branch of a case.
 
     `kind`, `label`, `p`, `unstable_before`, `unstable_after`, `residual`, `error_estimate`, `type` and
-    `criticality` are those of `Event`; `record` has everything that ``events.json`` says of it.
+    `criticality` are those of `Event`; `mesh_error` is what the elements add to the error of `p`, NaN where that was
+    not estimated; `record` has everything that ``events.json`` says of it.
 
     `u` is the state, the solver's unknowns (of a shell those of `arclen-shell`'s discretisation), an array of
     shape (n,), and `modes` are the critical eigenvectors among the branch's own unknowns, null vectors at folds
@@ -301,6 +302,7 @@ class CaseEvent(CasePoint, Event):
         self.unstable_after = record.get("unstable_after")
         self.residual = convert.or_nan(record.get("residual"))
         self.error_estimate = convert.or_nan(record.get("error_estimate"))
+        self.mesh_error = convert.or_nan(record.get("mesh_error"))
         self.type = record.get("type")
         self.criticality = record.get("criticality")
         form = ("curvature", "order", "frequency", "lyapunov", "lyapunov_error", "multiplicity")

@@ -72,6 +72,7 @@ def test_events_stand_at_their_points(fig12):
     fold = fig12.events.of("LP")[0]
     assert fold.unstable_before == 0 and fold.unstable_after == 1
     assert 0 < fold.error_estimate < 1e-6 and fold["force"] == fold.record["force"]
+    assert fold.error_estimate < fold.mesh_error < 1e-3
 
 
 def test_modes_at_losses_of_symmetry():

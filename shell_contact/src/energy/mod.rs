@@ -272,3 +272,51 @@ fn check_finite(values: &[f64]) -> Result<(), EvalError> {
         None => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dual::close;
+    use crate::film::FourTwo;
+    use crate::membrane::MooneyRivlin;
+    use crate::meridian::Mesh;
+    use crate::spline::HALF_BANDWIDTH;
+    use continuation::Matrix;
+    use continuation::linalg::kernel::{Fused, Separate};
+
+    /// Machines with and without wide vectors and fused products find the same to rounding.
+    #[test]
+    fn every_arithmetic_assembles_the_same() {
+        let mesh = Mesh::graded(20, 3.0).unwrap();
+        let n = mesh.unknowns();
+        let x: Vec<f64> = (0..n).map(|i| 2e-3 * (1.0 + 1.7 * i as f64).sin()).collect();
+        let c = Coefficients {
+            bending: 3e-5,
+            poisson: 0.4,
+            b: 0.3,
+            surface_tension: 0.05,
+            adhesion: 2e-3,
+            film: 1.0 / 30.0,
+            plate: 1.04,
+        };
+        let law = MooneyRivlin { b: c.b };
+        let assembled = |how: fn(Pass<'_, Mesh, Band<'_, MooneyRivlin, FourTwo>, true>)| {
+            let (mut r, mut j) = (vec![0.0; n], SymmetricBand::new(n, HALF_BANDWIDTH));
+            let mut band = Band::new(&law, &FourTwo, &c, 0.2, &mut r, &mut j);
+            how(Pass { half: &mesh, x: &x, wall: Wall::from(c.plate), visitor: &mut band });
+            (r, j)
+        };
+        let (r, j) = assembled(|pass| pass.run::<Separate>().unwrap());
+        let size = r.iter().fold(0.0_f64, |m, r| m.max(r.abs()));
+        for (again, mut other) in [
+            assembled(|pass| pass.run::<Fused>().unwrap()),
+            assembled(|pass| kernel::run(pass).unwrap()),
+        ] {
+            for (a, b) in r.iter().zip(&again) {
+                close(*a, *b, 1e-13, 1e-13 * size);
+            }
+            other.axpy(-1.0, &j);
+            assert!(other.norm() <= 1e-14 * j.norm());
+        }
+    }
+}

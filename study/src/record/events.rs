@@ -78,6 +78,11 @@ impl Serialize for ResolutionOf<'_> {
         map.serialize_entry("elements_per_wavelength", &self.0.per_wavelength)?;
         map.serialize_entry("elements", &self.0.elements)?;
         map.serialize_entry("elements_wanted", &self.0.wanted)?;
+        if let Some(error) = &self.0.mesh_error {
+            map.serialize_entry("force_mesh_error", &error.force)?;
+            map.serialize_entry("force_mesh_error_at", &error.at)?;
+            entry(&mut map, "special_points_mesh_error", error.special_points)?;
+        }
         map.end()
     }
 }
@@ -105,6 +110,10 @@ impl Serialize for EventOf<'_> {
         map.serialize_entry("unstable_after", &event.unstable_after)?;
         map.serialize_entry("residual", &event.residual)?;
         map.serialize_entry("error_estimate", &event.error_estimate)?;
+        if let Some(error) = &event.mesh_error {
+            entry(&mut map, "mesh_error", error.z0)?;
+            entry(&mut map, "force_mesh_error", error.force)?;
+        }
         let form = &event.form;
         entry(&mut map, "type", form.kind)?;
         entry(&mut map, "criticality", form.criticality)?;

@@ -30,7 +30,9 @@ pub use orbits::{CycleRecord, CyclesRecord, OrbitRecord, OrbitsRecord};
 pub use outline::{Outline, State};
 pub use physical::{Laboratory, PhysicalUnits, Scales, Unit, physical_table, spoken};
 pub use result::{Cell, ContactRow, EventRecord, FormRecord, MaxwellRecord, Table};
-pub use result::{ModeRecord, Pictures, ResolutionRecord, ShapeRecord};
+pub use result::{
+    MeshErrorRecord, ModeRecord, Pictures, PlaceError, ResolutionRecord, ShapeRecord,
+};
 pub use result::{StabilityRecord, TraceResult};
 pub use summary::summary;
 pub use sweep::{CaseRecord, Status, SweepResult, events_table, sweep_json, sweep_summary};

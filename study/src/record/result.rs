@@ -262,6 +262,8 @@ pub struct EventRecord {
     pub observables: Vec<(String, f64)>,
     /// What the normal form says.
     pub form: FormRecord,
+    /// What the mesh moves, where that was estimated.
+    pub mesh_error: Option<PlaceError>,
     /// The mode without the branch's symmetries that turns here.
     pub mode: Option<ModeRecord>,
     /// The solver's unknowns here; files leave them out.
@@ -368,13 +370,35 @@ pub struct ResolutionRecord {
     pub elements: usize,
     /// Elements that would be enough there.
     pub wanted: usize,
+    /// How far the mesh moves the branch, where that was estimated.
+    pub mesh_error: Option<MeshErrorRecord>,
+}
+
+/// Estimates of what the mesh changes along a branch, from one twice as fine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshErrorRecord {
+    /// Of the force at a given plate distance, in `√(χk_b)`, where that is worst among the points looked at.
+    pub force: f64,
+    /// Where that is, in `z0`.
+    pub at: f64,
+    /// Of the plate distance of folds and zeros of the force, the worst.
+    pub special_points: Option<f64>,
+}
+
+/// The same at a special point: of its plate distance and of the force there, each where it is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlaceError {
+    /// In `R0`.
+    pub z0: Option<f64>,
+    /// In `√(χk_b)`.
+    pub force: Option<f64>,
 }
 
 impl ResolutionRecord {
     /// A warning in a sentence, where there is one to be given.
     pub(super) fn text(&self) -> String {
         if self.enough {
-            return String::new();
+            return self.mesh_error.map_or_else(String::new, |error| error.text());
         }
         let film = if self.per_film_length.is_finite() {
             format!("{:.2} per film length ({} needed) and ", self.per_film_length, self.needed[0])
@@ -406,6 +430,16 @@ impl ResolutionRecord {
     pub(super) fn and(self, other: &ResolutionRecord) -> ResolutionRecord {
         let ratio = |one: &ResolutionRecord| one.wanted as f64 / one.elements as f64;
         if ratio(&self) >= ratio(other) { self } else { *other }
+    }
+}
+
+impl MeshErrorRecord {
+    /// What people see.
+    fn text(&self) -> String {
+        let places = self.special_points;
+        let places =
+            places.map_or_else(String::new, |x| format!(", special points by {x:.0e} in z0"));
+        format!("mesh: halving the elements moves the force by {:.0e}{places}\n", self.force)
     }
 }
 

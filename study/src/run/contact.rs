@@ -1,6 +1,7 @@
 //! The contact problem: a shell between two plates.
 
 use super::form::{StabilityColumns, certified, form};
+use super::mesh_error::MeshErrors;
 use super::resolution::Resolved;
 use super::stability::Stability;
 use super::states::of_contact;
@@ -32,10 +33,14 @@ pub(super) fn run(
 ) -> Result<TraceResult, RunError> {
     let (traced, stability) = scanned(case, contact, observer)?;
     let Traced { problem, branch, maxwell, seconds } = traced;
-    let resolved = Resolved::of(&problem, &branch);
+    let errors = MeshErrors::of(&problem, &branch);
+    let resolved = Resolved::of(&problem, &branch).with(&errors);
     let pictures = pictures(&resolved.titled(&case.name), &problem, &branch, &stability);
     let maxwell = Some(maxwell);
-    let result = examined(case, &branch, seconds, &stability, Some(&resolved));
+    let mut result = examined(case, &branch, seconds, &stability, Some(&resolved));
+    for (k, event) in result.events.iter_mut().enumerate() {
+        event.mesh_error = errors.event(k);
+    }
     Ok(TraceResult { pictures, maxwell, ..result })
 }
 
@@ -48,11 +53,15 @@ pub(super) fn run_reported(
     let (traced, stability) = scanned(case, contact, observer)?;
     let Traced { problem, branch, maxwell, seconds } = traced;
     let states = of_contact(&problem, &branch.branch, branch.branch.points.len());
-    let resolved = Resolved::of(&problem, &branch);
+    let errors = MeshErrors::of(&problem, &branch);
+    let resolved = Resolved::of(&problem, &branch).with(&errors);
     let title = resolved.titled(&case.name);
     let pictures = Pictures { states, ..pictures(&title, &problem, &branch, &stability) };
     let maxwell = Some(maxwell);
-    let result = examined(case, &branch, seconds, &stability, Some(&resolved));
+    let mut result = examined(case, &branch, seconds, &stability, Some(&resolved));
+    for (k, event) in result.events.iter_mut().enumerate() {
+        event.mesh_error = errors.event(k);
+    }
     Ok(TraceResult { pictures, maxwell, ..result })
 }
 
@@ -382,6 +391,7 @@ pub(super) fn event_record(traced: &ContactBranch, event: &Event, loaded: bool) 
         error_estimate: Some(event.error_estimate),
         observables: Vec::new(),
         form: form(branch, event),
+        mesh_error: None,
         mode: None,
         u: branch.points[event.point].u.clone(),
         eigenvectors: event.critical_modes(),

@@ -8,6 +8,7 @@ mod family;
 mod form;
 mod general;
 mod map;
+mod mesh_error;
 mod orbits;
 mod resolution;
 mod ring_load;

@@ -1,5 +1,6 @@
 //! Whether the elements resolve the film and the shell along a contact branch.
 
+use super::mesh_error::MeshErrors;
 use crate::record::{Cell, ResolutionRecord};
 use continuation::{Branch, Point};
 use shell_contact::resolution::{FEWEST_PER_FILM_LENGTH, FEWEST_PER_WAVELENGTH};
@@ -43,6 +44,7 @@ impl Resolved {
             enough: worst.is_enough(),
             elements,
             wanted: (worst.factor() * elements as f64).ceil() as usize,
+            mesh_error: None,
         });
         Resolved { each, record }
     }
@@ -57,6 +59,14 @@ impl Resolved {
         let known = self.each.get(index).copied().flatten();
         let number = known.map(|one| one.per_film_length).filter(|n| n.is_finite());
         number.map_or(Cell::Empty, Cell::from)
+    }
+
+    /// The same with what is known of the mesh's errors.
+    pub(super) fn with(mut self, errors: &MeshErrors) -> Resolved {
+        if let Some(record) = &mut self.record {
+            record.mesh_error = errors.record();
+        }
+        self
     }
 
     /// The worst of all points.

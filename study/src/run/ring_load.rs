@@ -204,6 +204,7 @@ pub(super) fn result(case: &ResolvedCase, branch: &Branch, seconds: f64) -> Trac
                 .filter_map(|name| Some(((*name).to_owned(), observed(name)?)))
                 .collect(),
             form: form(branch, event),
+            mesh_error: None,
             mode: None,
             u: point.u.clone(),
             eigenvectors: event.critical_modes(),

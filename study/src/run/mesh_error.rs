@@ -1,0 +1,87 @@
+//! How far the mesh moves a contact branch and its special points.
+
+use crate::record::{MeshErrorRecord, PlaceError};
+use shell_contact::discretisation::{Refined, Shift};
+use shell_contact::{ContactBranch, ContactProblem};
+
+/// Points of a branch that are looked at beside its special points.
+const SAMPLES: usize = 12;
+
+/// Estimates of the mesh's error along a branch in `z0`.
+pub(super) struct MeshErrors {
+    events: Vec<Option<PlaceError>>,
+    record: Option<MeshErrorRecord>,
+}
+
+impl MeshErrors {
+    /// Nothing is known.
+    pub(super) fn unknown() -> MeshErrors {
+        MeshErrors { events: Vec::new(), record: None }
+    }
+
+    /// Of a branch under held plates; under a device nothing is known.
+    pub(super) fn of(problem: &ContactProblem, traced: &ContactBranch) -> MeshErrors {
+        let branch = &traced.branch;
+        let held = branch.parameter == "z0";
+        let Some(mut refined) = held.then(|| Refined::new(problem).ok()).flatten() else {
+            return MeshErrors::unknown();
+        };
+        let mut look = |index: usize, kind| {
+            let point = &branch.points[index];
+            // beside the edge of the model the finer shell may be outside: then nothing is known
+            refined.shift(&point.u, &problem.parameters_at(point.p), kind).ok().flatten()
+        };
+        let found = branch.events.iter().map(|event| look(event.point, Some(&event.kind)));
+        let events: Vec<Option<PlaceError>> =
+            found.map(|shift| shift.map(|s| PlaceError { z0: s.z0, force: s.force })).collect();
+        let ordinary: Vec<usize> =
+            (0..branch.points.len()).filter(|&i| branch.points[i].event.is_none()).collect();
+        let every = ordinary.len().div_ceil(SAMPLES).max(1);
+        let (forces, heights) =
+            (span(traced, |i| force(traced, i)), span(traced, |i| branch.points[i].p));
+        let samples = ordinary.iter().skip(every / 2).step_by(every);
+        let mut worst: Option<(f64, usize)> = None;
+        for &index in samples {
+            let Some(shift) = look(index, None) else { continue };
+            // on a steep part the height at a given force is what is off
+            let error = least(shift, forces / heights);
+            if error.is_finite() && worst.is_none_or(|(most, _)| error > most) {
+                worst = Some((error, index));
+            }
+        }
+        let places = events.iter().flatten().filter_map(|event| event.z0);
+        let record = worst.map(|(force, index)| MeshErrorRecord {
+            force,
+            at: branch.points[index].p,
+            special_points: places.max_by(f64::total_cmp),
+        });
+        MeshErrors { events, record }
+    }
+
+    /// What is known of a special point.
+    pub(super) fn event(&self, number: usize) -> Option<PlaceError> {
+        self.events.get(number).copied().flatten()
+    }
+
+    /// The worst along the branch.
+    pub(super) fn record(&self) -> Option<MeshErrorRecord> {
+        self.record
+    }
+}
+
+/// The error of the force at the same height, or that of the height at the same force in its scale.
+fn least(shift: Shift, per_height: f64) -> f64 {
+    let of = |x: Option<f64>, scale: f64| x.map_or(f64::INFINITY, |x| x * scale);
+    of(shift.force, 1.0).min(of(shift.z0, per_height))
+}
+
+fn force(traced: &ContactBranch, index: usize) -> f64 {
+    let at = traced.branch.observables.iter().position(|name| name == "force");
+    at.map_or(f64::NAN, |k| traced.branch.points[index].observables[k])
+}
+
+/// Difference of the largest and the smallest value along the branch.
+fn span(traced: &ContactBranch, value: impl Fn(usize) -> f64) -> f64 {
+    let values = || (0..traced.branch.points.len()).map(&value);
+    values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+}
