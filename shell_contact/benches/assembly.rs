@@ -1,7 +1,9 @@
-//! Residual and Jacobian of the contact problem: `cargo bench -p arclen-shell`.
+//! Residual, Jacobian, factors and modes of the contact problem: `cargo bench -p arclen-shell`.
 
-use continuation::Problem;
+use continuation::{Matrix, Problem};
 use criterion::{Criterion, criterion_group, criterion_main};
+use shell_contact::contact::parameter::Z0;
+use shell_contact::modes::AsymmetricModes;
 use shell_contact::two_plates::{TwoPlatesGroups, TwoPlatesProblem};
 use shell_contact::{ContactProblem, Dimensionless, Law, Mesh, Shell};
 use std::hint::black_box;
@@ -42,6 +44,25 @@ fn assembly(c: &mut Criterion) {
             if law == Law::Hooke {
                 c.bench_function(&format!("residual/{name}/{elements}"), |b| {
                     b.iter(|| problem.residual(black_box(&u), &p, &mut r));
+                });
+                c.bench_function(&format!("by_z0/{name}/{elements}"), |b| {
+                    b.iter(|| problem.parameter_derivative(black_box(&u), &p, Z0, &mut r));
+                });
+                c.bench_function(&format!("factor/{name}/{elements}"), |b| {
+                    b.iter(|| j.factor(1e-30));
+                });
+                c.bench_function(&format!("solve/{name}/{elements}"), |b| {
+                    b.iter(|| {
+                        r.fill(1.0);
+                        j.solve(black_box(&mut r));
+                    });
+                });
+                let mut modes = AsymmetricModes::new(problem.mesh());
+                c.bench_function(&format!("modes/{name}/{elements}"), |b| {
+                    b.iter(|| modes.assemble(&problem, black_box(&u), &p));
+                });
+                c.bench_function(&format!("scan/{name}/{elements}"), |b| {
+                    b.iter(|| modes.scan(black_box(6)));
                 });
                 c.bench_function(&format!("observe/{name}/{elements}"), |b| {
                     b.iter(|| problem.observation(black_box(&u), &p));
