@@ -10,6 +10,19 @@
 
 use crate::linalg::{Dense, Facts, Matrix};
 
+/// Calls a method with the size of a block as a constant where it is small.
+macro_rules! sized {
+    ($n:expr, $this:ident.$method:ident($($argument:expr),*)) => {
+        match $n {
+            1 => $this.$method(1, $($argument),*),
+            2 => $this.$method(2, $($argument),*),
+            3 => $this.$method(3, $($argument),*),
+            4 => $this.$method(4, $($argument),*),
+            n => $this.$method(n, $($argument),*),
+        }
+    };
+}
+
 /// The rows that determine one block of unknowns.
 #[derive(Debug, Clone)]
 struct Stage {
@@ -58,16 +71,28 @@ impl Cyclic {
         }
     }
 
-    /// Factors the system. `x(j)`, `z(j)` are the blocks, by columns; `q` holds the rows `q_j`, one after
-    /// the other, and is overwritten.
-    pub(super) fn factor<'x>(
+    /// Factors the system. `blocks` holds the `X_j`, by columns, each followed by `z_j`; `q` holds the rows
+    /// `q_j`, one after the other, and is overwritten.
+    pub(super) fn factor(
         &mut self,
         closing: f64,
-        x: impl Fn(usize) -> (&'x [f64], &'x [f64]),
+        blocks: &[f64],
+        q: &mut [f64],
+        corner: f64,
+    ) -> Facts {
+        sized!(self.n, self.factor_sized(closing, blocks, q, corner))
+    }
+
+    #[inline(always)]
+    fn factor_sized(
+        &mut self,
+        n: usize,
+        closing: f64,
+        blocks: &[f64],
         q: &mut [f64],
         mut corner: f64,
     ) -> Facts {
-        let n = self.n;
+        let x = |j: usize| blocks[j * n * (n + 1)..(j + 1) * n * (n + 1)].split_at(n * n);
         let (mut sign, mut perturbed) = (1_i8, 0);
         let [e, f, t] = &mut self.carry;
         let (x0, z0) = x(0);
@@ -178,7 +203,11 @@ impl Cyclic {
     /// Solves in place: `g` holds the blocks `g_j` and becomes `u_{j+1}`, the last one `u_0`; `border`
     /// becomes `θ`.
     pub(super) fn solve(&mut self, closing: f64, g: &mut [f64], border: &mut f64) {
-        let n = self.n;
+        sized!(self.n, self.solve_sized(closing, g, border));
+    }
+
+    #[inline(always)]
+    fn solve_sized(&mut self, n: usize, closing: f64, g: &mut [f64], border: &mut f64) {
         let rows = 2 * n;
         let count = g.len() / n;
         for (index, stage) in self.stages.iter().enumerate() {
@@ -221,7 +250,11 @@ impl Cyclic {
     /// Solves with the transposed matrix: `c` holds the right sides of the columns `u_1 … u_{N−1}, u_0`
     /// and becomes the unknowns of the rows `0 … N − 1`; `border` likewise.
     pub(super) fn solve_transpose(&mut self, closing: f64, c: &mut [f64], border: &mut f64) {
-        let n = self.n;
+        sized!(self.n, self.solve_transpose_sized(closing, c, border));
+    }
+
+    #[inline(always)]
+    fn solve_transpose_sized(&mut self, n: usize, closing: f64, c: &mut [f64], border: &mut f64) {
         let rows = 2 * n;
         let count = c.len() / n;
         for (index, stage) in self.stages.iter().enumerate() {

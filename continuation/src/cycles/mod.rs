@@ -108,15 +108,18 @@
 
 mod basis;
 mod birth;
+mod block;
 mod collocation;
 mod cycle;
 mod cyclic;
 mod doubling;
 mod ends;
 mod explore;
+mod finer;
 mod floquet;
 mod matrix;
 mod mesh;
+mod observed;
 mod point;
 mod settings;
 mod trace;
