@@ -6,6 +6,7 @@ use super::mesh::{Orbit, halved, uniform};
 use super::settings::CycleSettings;
 use crate::any_problem::DynProblem;
 use crate::branch::EventKind;
+use crate::codim2::CurveError;
 use crate::newton::{self, NewtonError, NewtonSettings};
 use crate::problem::{EvalError, Problem};
 use crate::settings::SettingsError;
@@ -98,6 +99,9 @@ pub enum CycleError {
     /// The branch could not begin.
     #[error(transparent)]
     Trace(#[from] TraceError),
+    /// The curve in two parameters could not begin.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
 }
 
 /// A periodic orbit `u(t) = u(t + T)`, a piecewise polynomial.

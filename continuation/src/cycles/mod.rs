@@ -110,6 +110,7 @@ mod basis;
 mod birth;
 mod block;
 mod collocation;
+mod curve;
 mod cycle;
 mod cyclic;
 mod doubling;
@@ -126,6 +127,7 @@ mod trace;
 
 pub use birth::SmallCycle;
 pub use collocation::{CycleProblem, MAX_BLOCK};
+pub use curve::{CycleCurve, CycleCurvePoint, SpecialCycles, curve};
 pub use cycle::{Cycle, CycleError};
 pub use explore::{CycleOrigin, Explored, Follow, FollowedCycles, explore};
 pub use floquet::Multiplier;
