@@ -42,6 +42,8 @@ pub(super) fn of_quantity(label: &str) -> Color {
         "surface" => ORANGE,
         "hopf" => VERMILLION,
         "branch-point" => GREEN,
+        "cycle-fold" => SKY,
+        "period-doubling" => PURPLE,
         _ => BLUE,
     }
 }
