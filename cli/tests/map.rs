@@ -182,7 +182,16 @@ fn period_doublings_are_followed_where_the_case_asks_for_cycles() {
     // where a branch at c = 5.7 alone has it
     let output = arclen(
         place.path(),
-        &["orbits", "roessler", "--set", "path.end=0.13", "--depth", "0", "--no-pictures", "--json"],
+        &[
+            "orbits",
+            "roessler",
+            "--set",
+            "path.end=0.13",
+            "--depth",
+            "0",
+            "--no-pictures",
+            "--json",
+        ],
     );
     let orbits: Value = serde_json::from_slice(&output.stdout).unwrap();
     let cycles = orbits["branches"].as_array().unwrap().iter().find(|b| b["kind"] == "cycles");

@@ -1,7 +1,8 @@
 //! Periodic orbits beside AUTO-07p: van der Pol, Lorenz and `ppp`, from a Hopf point to a value of the parameter.
 //!
-//! `cargo bench -p arclen-continuation --bench orbits` prints points, intervals, the last period and CPU
-//! milliseconds: with the errors of every point, and without them, as AUTO works. `benches/auto` has the same runs for AUTO.
+//! `cargo bench -p arclen-continuation --bench orbits` prints points, intervals, the last period and the least time
+//! of some runs in milliseconds: with the errors of every point, and without them, as AUTO works. `benches/auto` has the
+//! same runs for AUTO. A word after `--` chooses the problems that begin with it.
 #![allow(clippy::print_stdout, clippy::expect_used)]
 
 use continuation::cycles::{CycleSettings, SmallCycle, trace};
@@ -12,12 +13,14 @@ use continuation::{
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+/// Derivatives by the unknowns, row by row, and by the parameter.
+type Slopes<const N: usize> = fn([f64; N], f64) -> ([[f64; N]; N], [f64; N]);
+
 /// `du/dt = f(u, p)` with `N` unknowns and one parameter.
 struct System<const N: usize> {
     parameters: [Parameter; 1],
     rates: fn([f64; N], f64) -> [f64; N],
-    /// By the unknowns, row by row, and by the parameter.
-    slopes: fn([f64; N], f64) -> ([[f64; N]; N], [f64; N]),
+    slopes: Slopes<N>,
 }
 
 fn state<const N: usize>(u: &[f64]) -> [f64; N] {
@@ -104,19 +107,6 @@ fn run<const N: usize>(
             best = best.min(1e3 * clock.elapsed().as_secs_f64());
         }
         let last = branch.cycles.last().expect("points");
-        if std::env::var("VERBOSE").is_ok() {
-            for c in &branch.cycles {
-                println!(
-                    "{} {} {:?} {:?} {:?} {:?}",
-                    c.cycle.parameters[0],
-                    c.cycle.mesh.len() - 1,
-                    c.error,
-                    c.period_error,
-                    c.trivial_error,
-                    c.multipliers.iter().map(|m| m.value()).collect::<Vec<_>>()
-                );
-            }
-        }
         let intervals = branch.cycles.iter().map(|c| c.cycle.mesh.len() - 1);
         let (most, sum) = (intervals.clone().max().unwrap_or(0), intervals.sum::<usize>());
         println!(

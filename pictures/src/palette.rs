@@ -87,7 +87,7 @@ pub(super) fn form(kind: &str) -> Form {
         "hopf" | "generalised-hopf" => Form::Ring,
         "period-doubling" => Form::Up,
         "neimark-sacker" => Form::Down,
-        "cusp" => Form::Up,
+        "cusp" | "cycle-cusp" => Form::Up,
         "bogdanov-takens" => Form::Square,
         "zero-hopf" => Form::Diamond,
         "double-hopf" => Form::HollowDiamond,

@@ -4,6 +4,8 @@ use super::basis::Basis;
 use super::block::sized;
 use super::cycle::{Cycle, CycleError};
 use super::floquet::{Latest, Multiplier, multipliers};
+use super::functions::functions;
+use super::interval::{fill, interpolate, rows_of, weigh};
 use super::matrix::CycleMatrix;
 use super::mesh::Orbit;
 use crate::any_problem::DynProblem;
@@ -278,7 +280,7 @@ impl<'a> CycleProblem<'a> {
         known.at.clear();
         let found = self.multipliers_at(work, x, p);
         work.known = known;
-        work.known.tests = Self::tests(found.as_ref().map_or(&[], Vec::as_slice));
+        work.known.tests = functions(found.as_ref().map_or(&[], Vec::as_slice));
         work.known.multipliers = found?;
         work.known.at.extend_from_slice(x);
         work.known.at.extend_from_slice(p);
@@ -383,7 +385,7 @@ impl<'a> CycleProblem<'a> {
                 rows_of(jacobian, slopes, unit);
                 let rows = &mut block[i * n * wide..(i + 1) * n * wide];
                 let scale = -h * period;
-                sized!(n, k, fill(&self.basis, i, (scale, -h / self.unit), slopes, f, rows));
+                sized!(n, k, fill(&self.basis, i, (scale, -h / self.unit), (slopes, f), rows));
                 if let Some(mass) = &self.mass {
                     let by = &self.basis.slopes[i * (m + 1)..(i + 1) * (m + 1)];
                     for (r, row) in rows.chunks_exact_mut(wide).enumerate() {
@@ -431,157 +433,6 @@ impl<'a> CycleProblem<'a> {
         }
         Err(EvalError::Inadmissible { what: "the period is not positive", at, value })
     }
-
-    /// The two functions of the multipliers: `(Π(1 + μ), Π(μ_i μ_j − 1))`, over the root of the sum of the
-    /// squares of the polynomials' coefficients, the trivial multiplier left out of the second.
-    fn tests(known: &[Multiplier]) -> [f64; 2] {
-        let doubling = normalised(known.iter().map(|m| (m.log_modulus, m.argument)), -1.0);
-        let trivial = super::point::trivial(known);
-        let others: Vec<&Multiplier> =
-            known.iter().enumerate().filter(|(i, _)| Some(*i) != trivial).map(|(_, m)| m).collect();
-        let pairs = others.iter().enumerate().flat_map(|(i, a)| {
-            others[i + 1..]
-                .iter()
-                .map(move |b| (a.log_modulus + b.log_modulus, a.argument + b.argument))
-        });
-        [doubling, normalised(pairs, 1.0)]
-    }
-}
-
-#[inline(always)]
-fn interpolate(n: usize, k: usize, basis: &Basis, nodes: &[f64], u: &mut [f64], du: &mut [f64]) {
-    let (m, nodes) = (k / n, &nodes[..k + n]);
-    let (u, du) = (&mut u[..k], &mut du[..k]);
-    let (values, slopes) = (&basis.values[..m * (m + 1)], &basis.slopes[..m * (m + 1)]);
-    u.fill(0.0);
-    du.fill(0.0);
-    for i in 0..m {
-        for l in 0..=m {
-            let (value, slope) = (values[i * (m + 1) + l], slopes[i * (m + 1) + l]);
-            for c in 0..n {
-                u[i * n + c] += value * nodes[l * n + c];
-                du[i * n + c] += slope * nodes[l * n + c];
-            }
-        }
-    }
-}
-
-/// Adds to the unknowns of an interval, and to `pending` for its right end, the integrals of the polynomials
-/// with the one whose values are `nodes`; the first of `out` begins with what is pending there.
-#[inline(always)]
-fn weigh(
-    n: usize,
-    k: usize,
-    basis: &Basis,
-    h: f64,
-    nodes: &[f64],
-    out: &mut [f64],
-    pending: &mut [f64],
-) {
-    let m = k / n;
-    let (nodes, out, pending) = (&nodes[..k + n], &mut out[..k], &mut pending[..n]);
-    let products = &basis.products[..(m + 1) * (m + 1)];
-    let sum = |l: usize, c: usize| -> f64 {
-        h * (0..=m).map(|i| products[l * (m + 1) + i] * nodes[i * n + c]).sum::<f64>()
-    };
-    for c in 0..n {
-        out[c] = sum(0, c) + pending[c];
-        pending[c] = sum(m, c);
-    }
-    for l in 1..m {
-        for c in 0..n {
-            out[l * n + c] = sum(l, c);
-        }
-    }
-}
-
-/// The rows of one Gauss point: `slopes_k − h T values_k J`, the derivatives of `u′` being those without a
-/// mass matrix, and the border's column.
-#[inline(always)]
-fn fill(
-    n: usize,
-    k: usize,
-    basis: &Basis,
-    i: usize,
-    (scale, by_period): (f64, f64),
-    jacobian: &[f64],
-    f: &[f64],
-    rows: &mut [f64],
-) {
-    let (m, wide) = (k / n, n + k + 1);
-    let (jacobian, f) = (&jacobian[..n * n], &f[..n]);
-    for l in 0..=m {
-        let by = scale * basis.values[i * (m + 1) + l];
-        let slope = basis.slopes[i * (m + 1) + l];
-        for r in 0..n {
-            let place = &mut rows[r * wide + l * n..r * wide + (l + 1) * n];
-            for c in 0..n {
-                place[c] = by * jacobian[r * n + c];
-            }
-            place[r] += slope;
-        }
-    }
-    for r in 0..n {
-        rows[r * wide + k + n] = by_period * f[r];
-    }
-}
-
-/// The entries of a matrix, row by row.
-fn rows_of(a: &AnyMatrix, rows: &mut [f64], unit: &mut [f64]) {
-    let n = unit.len();
-    if let Some(dense) = a.downcast::<Dense>() {
-        for c in 0..n {
-            dense.column(c).iter().enumerate().for_each(|(r, value)| rows[r * n + c] = *value);
-        }
-        return;
-    }
-    rows.fill(0.0);
-    if a.entries(&mut |r, c, value| rows[r * n + c] += value) {
-        return;
-    }
-    let mut column = vec![0.0; n];
-    for c in 0..n {
-        unit.fill(0.0);
-        unit[c] = 1.0;
-        a.mul(unit, &mut column);
-        (0..n).for_each(|r| rows[r * n + c] = column[r]);
-    }
-}
-
-/// `Π(μ − z)`, `z` 1 or −1, over the root of the sum of the squares of the coefficients of the
-/// polynomial `Π(μ + x)`: at most of order one whatever the sizes of the numbers, and as smooth.
-fn normalised(values: impl Iterator<Item = (f64, f64)>, z: f64) -> f64 {
-    let (mut coefficients, mut product) = (vec![(1.0, 0.0)], (1.0, 0.0));
-    let times = |a: (f64, f64), b: (f64, f64)| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
-    for (log, argument) in values {
-        // large numbers by their reciprocals: a common factor
-        let (value, one) = if log > 0.0 {
-            let turn = if argument.abs() == std::f64::consts::PI {
-                (-1.0, 0.0)
-            } else {
-                (argument.cos(), argument.sin())
-            };
-            (turn, (-log).exp())
-        } else {
-            let size = log.exp();
-            let turn = if argument.abs() == std::f64::consts::PI {
-                (-size, 0.0)
-            } else {
-                (size * argument.cos(), size * argument.sin())
-            };
-            (turn, 1.0)
-        };
-        product = times(product, (value.0 - z * one, value.1));
-        let before = coefficients.clone();
-        coefficients.push((0.0, 0.0));
-        for (k, c) in coefficients.iter_mut().enumerate() {
-            let low = before.get(k).map_or((0.0, 0.0), |b| times(*b, value));
-            let high = if k > 0 { before[k - 1] } else { (0.0, 0.0) };
-            *c = (low.0 + one * high.0, low.1 + one * high.1);
-        }
-    }
-    let size = coefficients.iter().map(|c| c.0 * c.0 + c.1 * c.1).sum::<f64>().sqrt();
-    product.0 / size
 }
 
 impl Problem for CycleProblem<'_> {
@@ -747,7 +598,7 @@ impl Problem for CycleProblem<'_> {
                 work.shifted = shifted;
                 return Ok(None);
             };
-            work.ahead.tests = Self::tests(&found);
+            work.ahead.tests = functions(&found);
             work.ahead.at.extend_from_slice(&shifted);
             work.ahead.at.extend_from_slice(&q);
         }

@@ -210,7 +210,7 @@ impl Cyclic {
             for c in 0..n {
                 let dot =
                     |a: &[f64]| -> f64 { (0..n).map(|r| stage.multiples[r] * a[r + c * n]).sum() };
-                let (by_first, by_next) = (dot(&stage.first), dot(&stage.next));
+                let (by_first, by_next) = (dot(stage.first), dot(stage.next));
                 q[c] -= by_first;
                 q[next * n + c] -= factor * by_next;
             }
@@ -309,7 +309,7 @@ impl Cyclic {
             let end = tail.len() - n;
             for k in 0..n {
                 let dot = |a: &[f64]| -> f64 { (0..n).map(|r| block[r] * a[r + k * n]).sum() };
-                let (by_next, by_first) = (dot(&stage.next), dot(&stage.first));
+                let (by_next, by_first) = (dot(stage.next), dot(stage.first));
                 tail[k] -= factor * by_next;
                 tail[end + k] -= by_first;
             }
