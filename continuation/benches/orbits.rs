@@ -95,6 +95,7 @@ fn run<const N: usize>(
         let cycles = CycleSettings { check, ..CycleSettings::default() };
         let once = || {
             let small = SmallCycle::at_hopf(system, &equilibria, hopf, &cycles).expect("a cycle");
+            let settings = Settings { increasing: Some(small.increasing), ..settings.clone() };
             trace(system, parameter, &small.cycle, &settings, &cycles, &[], &mut |_| {
                 ControlFlow::Continue(())
             })
@@ -157,6 +158,12 @@ fn main() {
             )
         },
     };
+    let fitzhugh_nagumo = System {
+        parameters: parameter("I", 1.0),
+        rates: |[v, w], p| [v - v * v * v / 3.0 - w + p, 0.08 * (v + 0.7 - 0.8 * w)],
+        slopes: |[v, _], _| ([[1.0 - v * v, -1.0], [0.08, -0.064]], [1.0, 0.0]),
+    };
+    run(("FitzHugh-Nagumo", &fitzhugh_nagumo), ([-1.2, -0.62], 0.0, 2.0), (0, 1.2), 3);
     run(("van der Pol, 5", &van_der_pol), ([0.0; 2], -1.0, 1.0), (0, 5.0), 20);
     run(("van der Pol, 100", &van_der_pol), ([0.0; 2], -1.0, 1.0), (0, 100.0), 3);
     let x = (8.0_f64 / 3.0 * 19.0).sqrt();

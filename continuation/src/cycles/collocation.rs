@@ -70,9 +70,11 @@ struct Work {
     unit: Vec<f64>,
     /// For the metric.
     weighed: Vec<f64>,
-    /// The state and the parameters whose multipliers are known, and one beside it.
+    /// The state and the parameters whose multipliers are known.
     known: Known,
-    ahead: Known,
+    /// Where and in which direction the slopes of their functions are known, and these.
+    along: Vec<f64>,
+    slopes_along: [f64; 2],
     shifted: Vec<f64>,
     latest: Latest,
     /// For the multipliers alone.
@@ -161,7 +163,8 @@ impl<'a> CycleProblem<'a> {
             unit: vec![0.0; n],
             weighed: vec![0.0; 2 * n],
             known: Known::default(),
-            ahead: Known::default(),
+            along: Vec::new(),
+            slopes_along: [0.0; 2],
             shifted: vec![0.0; intervals * m * n + 1],
             latest: Latest::default(),
             matrix: None,
@@ -193,9 +196,9 @@ impl<'a> CycleProblem<'a> {
         let mut phase = std::mem::take(&mut self.phase);
         let mut square = 0.0;
         {
-            let Work { u, du, nodes, known, ahead, .. } = &mut *self.work.borrow_mut();
+            let Work { u, du, nodes, known, along, .. } = &mut *self.work.borrow_mut();
             known.at.clear();
-            ahead.at.clear();
+            along.clear();
             for j in 0..self.intervals() {
                 let h = self.mesh[j + 1] - self.mesh[j];
                 self.interpolate(values, j, nodes, u, du);
@@ -572,7 +575,7 @@ impl Problem for CycleProblem<'_> {
         Ok(())
     }
 
-    /// By a difference to one side: both functions of the multipliers from one assembly.
+    /// By central differences, of both functions of the multipliers at once; those at `x` stay known.
     fn observable_slope(
         &self,
         k: usize,
@@ -586,23 +589,30 @@ impl Problem for CycleProblem<'_> {
             return Ok(Some(dx[self.dim() - 1] / self.unit));
         }
         let work = &mut *self.work.borrow_mut();
-        self.find_multipliers(work, x, p)?;
-        let mut q = p.to_vec();
-        q[which.0] += SHIFT * dp;
-        let mut shifted = std::mem::take(&mut work.shifted);
-        shifted.iter_mut().zip(x.iter().zip(dx)).for_each(|(s, (x, d))| *s = x + SHIFT * d);
-        if !work.ahead.is_at(&shifted, &q) {
-            work.ahead.at.clear();
-            // no value there, or one that cannot be had: differences to both sides say what is wrong
-            let Ok(found) = self.multipliers_at(work, &shifted, &q) else {
-                work.shifted = shifted;
+        let key = || x.iter().chain(p).chain(dx).chain(std::iter::once(&dp));
+        if !work.along.iter().eq(key()) {
+            work.along.clear();
+            let mut q = p.to_vec();
+            let mut shifted = std::mem::take(&mut work.shifted);
+            let mut sides = [[0.0; 2]; 2];
+            let mut complete = true;
+            for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+                let step = sign * SHIFT;
+                q[which.0] = p[which.0] + step * dp;
+                shifted.iter_mut().zip(x.iter().zip(dx)).for_each(|(s, (x, d))| *s = x + step * d);
+                match self.multipliers_at(work, &shifted, &q) {
+                    Ok(found) => *side = functions(&found),
+                    Err(_) => complete = false,
+                }
+            }
+            work.shifted = shifted;
+            if !complete {
+                // no value there: what is tried next says why
                 return Ok(None);
-            };
-            work.ahead.tests = functions(&found);
-            work.ahead.at.extend_from_slice(&shifted);
-            work.ahead.at.extend_from_slice(&q);
+            }
+            work.slopes_along = [0, 1].map(|i| (sides[0][i] - sides[1][i]) / (2.0 * SHIFT));
+            work.along.extend(key());
         }
-        work.shifted = shifted;
-        Ok(Some((work.ahead.tests[k - 1] - work.known.tests[k - 1]) / SHIFT))
+        Ok(Some(work.slopes_along[k - 1]))
     }
 }

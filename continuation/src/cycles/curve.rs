@@ -18,7 +18,7 @@ use crate::events::Watch;
 use crate::problem::{ParamId, Problem};
 use crate::settings::{Counting, Settings};
 use crate::step::State;
-use crate::tracer::{Baton, Progress, Tracer};
+use crate::tracer::{Baton, Progress, TraceError, Tracer};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -192,6 +192,18 @@ struct Half {
     stopped: Stop,
 }
 
+impl Half {
+    /// The end where there is no way over to another mesh; an error at the start.
+    fn given_up(mut self, error: CycleError) -> Result<Self, CycleError> {
+        if self.points.is_empty() {
+            return Err(error);
+        }
+        let detail = format!("there is no way over to another mesh: {error}");
+        self.stopped = Stop { reason: StopReason::StepTooSmall, detail };
+        Ok(self)
+    }
+}
+
 /// Both halves as one curve, the first one backwards.
 fn join(
     back: Half,
@@ -308,8 +320,14 @@ impl Run<'_, '_> {
         let mut left: Option<Left> = None;
         loop {
             let whole = self.whole(&cycle);
-            let equations = CycleProblem::of(self.problem, &whole)?;
-            let extended = self.extended(&equations, &whole)?;
+            let equations = match CycleProblem::of(self.problem, &whole) {
+                Ok(equations) => equations,
+                Err(error) => return half.given_up(error),
+            };
+            let extended = match self.extended(&equations, &whole) {
+                Ok(extended) => extended,
+                Err(error) => return half.given_up(error),
+            };
             let (x, p) = extended.start();
             let tracer = match &left {
                 None => Tracer::of(extended.problem(), name, x, &p, settings.clone())?,
@@ -319,11 +337,7 @@ impl Run<'_, '_> {
                     let settings = settings.clone();
                     match Tracer::resume(extended.problem(), which, &p, &baton, settings, OVER) {
                         Ok(tracer) => tracer,
-                        Err(refusal) => {
-                            let detail = format!("no way over to another mesh: {refusal}");
-                            half.stopped = Stop { reason: StopReason::StepTooSmall, detail };
-                            return Ok(half);
-                        }
+                        Err(refusal) => return half.given_up(TraceError::Tangent(refusal).into()),
                     }
                 }
             };

@@ -37,6 +37,20 @@ pub(super) fn curves<P: Problem>(
                 continue;
             }
         };
+        let stopped = &branch.branch.stopped;
+        let unbounded = stopped.reason == StopReason::PeriodUnbounded;
+        if !(stopped.reason.is_complete() || unbounded) {
+            refused.push(format!(
+                "the cycles from the Hopf point at {place} end early ({}): {}",
+                stopped.reason, stopped.detail
+            ));
+        }
+        if let Some(doubt) = branch.branch.doubts.first() {
+            refused.push(format!(
+                "curves may be missing: on the cycles from the Hopf point at {place}, {} from {:.8} to {:.8}, {}",
+                base.parameter, doubt.from, doubt.to, doubt.reason
+            ));
+        }
         for (number, (kind, name)) in KINDS.iter().enumerate() {
             for event in branch.branch.events_of(kind) {
                 let passed = |(other, curve): &(usize, CycleCurve)| {
