@@ -157,3 +157,47 @@ fn wrong_keys_are_refused_with_the_right_ones() {
     }
     assert!(fs::read_dir(place.path()).unwrap().next().is_none(), "nothing is created");
 }
+
+/// Rössler's cycles over the second parameter: with `diagram.cycles`, and without it none.
+#[test]
+fn period_doublings_are_followed_where_the_case_asks_for_cycles() {
+    let place = tempfile::tempdir().unwrap();
+    let over = ["map", "roessler", "--over", "c", "--set", "map.from=4", "--set", "map.to=5.7"];
+    let over = [&over[..], &["--set", "path.end=0.13", "--out", "o"]].concat();
+    let without = arclen(place.path(), &over);
+    assert_eq!(without.status.code(), Some(0), "{}", String::from_utf8_lossy(&without.stderr));
+    let kinds = |json: &Value| -> Vec<String> {
+        let curves = json["curves"].as_array().unwrap();
+        curves.iter().map(|curve| curve["kind"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(kinds(&json(&place.path().join("o"))), ["hopf"]);
+    let with = [&over[..], &["--set", "diagram.cycles=true"]].concat();
+    let with = arclen(place.path(), &with);
+    assert_eq!(with.status.code(), Some(0), "{}", String::from_utf8_lossy(&with.stderr));
+    let map = json(&place.path().join("o"));
+    assert_eq!(kinds(&map), ["hopf", "period-doubling"]);
+    let table = fs::read_to_string(place.path().join("o/period-doubling-0.csv")).unwrap();
+    assert!(table.starts_with("point,a,c,period,event\n"), "{table:.60}");
+    let last = table.lines().last().unwrap().split(',').collect::<Vec<_>>();
+    // where a branch at c = 5.7 alone has it
+    let output = arclen(
+        place.path(),
+        &[
+            "orbits",
+            "roessler",
+            "--set",
+            "path.end=0.13",
+            "--depth",
+            "0",
+            "--no-pictures",
+            "--json",
+        ],
+    );
+    let orbits: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let cycles = orbits["branches"].as_array().unwrap().iter().find(|b| b["kind"] == "cycles");
+    let events = cycles.unwrap()["events"].as_array().unwrap();
+    let doubling = events.iter().find(|e| e["kind"] == "period-doubling").unwrap();
+    assert_eq!(last[2].parse::<f64>().unwrap(), 5.7);
+    near(&doubling["a"], last[1].parse().unwrap(), 1e-8);
+    near(&doubling["period"], last[3].parse().unwrap(), 1e-7);
+}

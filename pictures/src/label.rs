@@ -36,6 +36,8 @@ pub(super) fn letters(kind: &str) -> &'static str {
         "double-hopf" => "HH",
         "period-doubling" => "PD",
         "neimark-sacker" => "NS",
+        "cycle-fold" => "LPC",
+        "cycle-cusp" => "CPC",
         other if other.ends_with("-maximum") => "max",
         other if other.ends_with("-minimum") => "min",
         _ => "",

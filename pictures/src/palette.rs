@@ -42,6 +42,8 @@ pub(super) fn of_quantity(label: &str) -> Color {
         "surface" => ORANGE,
         "hopf" => VERMILLION,
         "branch-point" => GREEN,
+        "cycle-fold" => SKY,
+        "period-doubling" => PURPLE,
         _ => BLUE,
     }
 }
@@ -85,7 +87,7 @@ pub(super) fn form(kind: &str) -> Form {
         "hopf" | "generalised-hopf" => Form::Ring,
         "period-doubling" => Form::Up,
         "neimark-sacker" => Form::Down,
-        "cusp" => Form::Up,
+        "cusp" | "cycle-cusp" => Form::Up,
         "bogdanov-takens" => Form::Square,
         "zero-hopf" => Form::Diamond,
         "double-hopf" => Form::HollowDiamond,

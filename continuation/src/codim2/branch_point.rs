@@ -165,7 +165,21 @@ impl<'a> BranchPointCurve<'a> {
         if let Some(leaving) = event.crossing().and_then(|crossing| crossing.leaving.first()) {
             base.widen(&leaving.du)?;
         }
-        let n = problem.dim();
+        Self::new(base)
+    }
+
+    /// The curve of branch points of cycles through the state `u` of their equations.
+    pub(crate) fn of_cycles(
+        problem: &'a DynProblem<'a>,
+        parameters: (ParamId, ParamId),
+        at: (Vec<f64>, Vec<f64>),
+        scales: (f64, f64),
+    ) -> Result<Self, CurveError> {
+        Self::new(Underlying::of_cycles(problem, parameters, at, scales))
+    }
+
+    fn new(base: Underlying<'a>) -> Result<Self, CurveError> {
+        let (problem, n) = (base.problem, base.problem.dim());
         let names = base.names(&[BETA, UNFOLDING]);
         let mut start = base.u.clone();
         start.extend([0.0, base.p[base.first.0]]);
@@ -207,6 +221,11 @@ impl<'a> BranchPointCurve<'a> {
         self.base.start()
     }
 
+    /// Where the trace ends because the branch point does not persist.
+    pub(crate) fn bounds() -> [Watch; 2] {
+        [UNFOLDED, -UNFOLDED].map(|level| Watch::stop_at(UNFOLDING, level))
+    }
+
     /// Traces the curve both ways from its start, as far as branch points persist; see
     /// [`FoldCurve::trace`](super::FoldCurve::trace).
     ///
@@ -219,7 +238,7 @@ impl<'a> BranchPointCurve<'a> {
         observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Curve, CurveError> {
         let mut all: Vec<Watch> = watches.to_vec();
-        all.extend([UNFOLDED, -UNFOLDED].map(|level| Watch::stop_at(UNFOLDING, level)));
+        all.extend(Self::bounds());
         let second = self.base.parameters[self.base.second_of_curve().0].name;
         let start = (second, &self.start[..], &self.base.start()[..]);
         let mut curve = trace(self, start, settings, &all, observer)?;

@@ -4,6 +4,7 @@ use super::differences::{Along, Differences, slope_step};
 use super::null::Null;
 use super::trace::{Curve, trace};
 use super::underlying::{CurveError, Underlying};
+use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Event, EventKind, Point};
 use crate::events::Watch;
 use crate::linalg::{AnyMatrix, Arrow, Matrix, max_abs};
@@ -89,6 +90,16 @@ impl<'a> FoldCurve<'a> {
         second: &str,
     ) -> Result<Self, CurveError> {
         Self::new(Underlying::at(problem, branch, event, second, EventKind::Fold)?)
+    }
+
+    /// The curve of limit points of cycles through the state `u` of their equations.
+    pub(crate) fn of_cycles(
+        problem: &'a DynProblem<'a>,
+        parameters: (ParamId, ParamId),
+        at: (Vec<f64>, Vec<f64>),
+        scales: (f64, f64),
+    ) -> Result<Self, CurveError> {
+        Self::new(Underlying::of_cycles(problem, parameters, at, scales))
     }
 
     pub(super) fn new(base: Underlying<'a>) -> Result<Self, CurveError> {

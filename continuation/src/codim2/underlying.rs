@@ -127,6 +127,36 @@ impl<'a> Underlying<'a> {
         })
     }
 
+    /// The same of the equations of cycles, on a mesh on which no branch was traced: `scales` are those of the
+    /// unknowns and of the first parameter.
+    pub(super) fn of_cycles(
+        problem: &'a DynProblem<'a>,
+        (first, second): (ParamId, ParamId),
+        (u, p): (Vec<f64>, Vec<f64>),
+        (unknowns, range): (f64, f64),
+    ) -> Self {
+        let all = problem.parameters();
+        let typical = all[second.0].scale.abs();
+        let scales = Scales {
+            unknowns,
+            first: range,
+            second: if typical > 0.0 && typical.is_finite() { typical } else { 1.0 },
+            metric: unknowns / range,
+        };
+        let rest = (0..all.len()).filter(|i| *i != first.0);
+        Underlying {
+            problem,
+            first,
+            second,
+            scales,
+            parameters: rest.map(|i| all[i].clone()).collect(),
+            zero: vec![0.0; u.len()],
+            u,
+            p,
+            moves: true,
+        }
+    }
+
     /// The same from another state.
     pub(super) fn from(&self, u: Vec<f64>, p: Vec<f64>) -> Self {
         Underlying {

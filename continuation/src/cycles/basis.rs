@@ -8,10 +8,14 @@ pub(super) struct Basis {
     pub(super) points: Vec<f64>,
     /// Their weights, of sum 1.
     pub(super) weights: Vec<f64>,
-    /// Row `i`: the values of the `m + 1` polynomials at Gauss point `i`.
-    pub(super) values: Vec<Vec<f64>>,
-    /// Row `i`: their derivatives there.
-    pub(super) slopes: Vec<Vec<f64>>,
+    /// Row `i` of `m + 1`: the values of the polynomials at Gauss point `i`.
+    pub(super) values: Vec<f64>,
+    /// Their derivatives there.
+    pub(super) slopes: Vec<f64>,
+    /// Integrals of products of two polynomials by the Gauss rule, `(m + 1)²`.
+    pub(super) products: Vec<f64>,
+    /// Reciprocal of `Π (k − l)` over the other nodes `l`.
+    scales: Vec<f64>,
     /// The derivative of order `m` of each polynomial, a constant.
     pub(super) top: Vec<f64>,
 }
@@ -21,8 +25,15 @@ impl Basis {
         let (points, weights) = gauss(degree);
         let mut basis = Basis {
             degree,
-            values: vec![vec![0.0; degree + 1]; degree],
-            slopes: vec![vec![0.0; degree + 1]; degree],
+            values: vec![0.0; (degree + 1) * degree],
+            slopes: vec![0.0; (degree + 1) * degree],
+            products: vec![0.0; (degree + 1) * (degree + 1)],
+            scales: (0..=degree)
+                .map(|k| {
+                    let others = (0..=degree).filter(|l| *l != k);
+                    others.map(|l| k as f64 - l as f64).product::<f64>().recip()
+                })
+                .collect(),
             top: vec![0.0; degree + 1],
             points,
             weights,
@@ -31,9 +42,12 @@ impl Basis {
             let t = basis.points[i];
             let mut row = vec![0.0; degree + 1];
             basis.evaluate(t, &mut row);
-            basis.values[i].copy_from_slice(&row);
+            basis.values[i * (degree + 1)..][..degree + 1].copy_from_slice(&row);
+            for (k, product) in basis.products.iter_mut().enumerate() {
+                *product += basis.weights[i] * row[k / (degree + 1)] * row[k % (degree + 1)];
+            }
             basis.differentiate(t, &mut row);
-            basis.slopes[i].copy_from_slice(&row);
+            basis.slopes[i * (degree + 1)..][..degree + 1].copy_from_slice(&row);
         }
         let m = degree as f64;
         for k in 0..=degree {
@@ -49,12 +63,17 @@ impl Basis {
 
     /// Values of the polynomials at `t`.
     pub(super) fn evaluate(&self, t: f64, out: &mut [f64]) {
-        let m = self.degree as f64;
-        for k in 0..=self.degree {
-            out[k] = (0..=self.degree)
-                .filter(|l| *l != k)
-                .map(|l| (m * t - l as f64) / (k as f64 - l as f64))
-                .product();
+        let x = self.degree as f64 * t;
+        // products of what is left of a node, then of what is right of it
+        let mut product = 1.0;
+        for (k, out) in out.iter_mut().enumerate() {
+            *out = product * self.scales[k];
+            product *= x - k as f64;
+        }
+        product = 1.0;
+        for (k, out) in out.iter_mut().enumerate().rev() {
+            *out *= product;
+            product *= x - k as f64;
         }
     }
 
@@ -122,8 +141,8 @@ mod tests {
             let node = |k: usize| (k as f64 / m as f64).powi(m as i32);
             for i in 0..m {
                 let t = basis.points[i];
-                let value: f64 = (0..=m).map(|k| basis.values[i][k] * node(k)).sum();
-                let slope: f64 = (0..=m).map(|k| basis.slopes[i][k] * node(k)).sum();
+                let value: f64 = (0..=m).map(|k| basis.values[i * (m + 1) + k] * node(k)).sum();
+                let slope: f64 = (0..=m).map(|k| basis.slopes[i * (m + 1) + k] * node(k)).sum();
                 assert!((value - t.powi(m as i32)).abs() < 1e-13);
                 assert!((slope - m as f64 * t.powi(m as i32 - 1)).abs() < 1e-12);
             }

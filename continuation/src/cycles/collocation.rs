@@ -1,8 +1,11 @@
 //! The collocation equations as a [`Problem`].
 
 use super::basis::Basis;
+use super::block::sized;
 use super::cycle::{Cycle, CycleError};
-use super::floquet::{Multiplier, multipliers};
+use super::floquet::{Latest, Multiplier, multipliers};
+use super::functions::functions;
+use super::interval::{fill, interpolate, rows_of, weigh};
 use super::matrix::CycleMatrix;
 use super::mesh::Orbit;
 use crate::any_problem::DynProblem;
@@ -18,6 +21,9 @@ pub const MAX_BLOCK: usize = 800;
 
 /// Range of an orbit, relative to its largest value, below which it is a single state to rounding.
 const CONSTANT: f64 = 1e-12;
+
+/// Step, in the scaled arclength, over which functions of the multipliers are differenced.
+const SHIFT: f64 = 1e-6;
 
 /// Name of the period among the observables.
 pub(super) const PERIOD: &str = "period";
@@ -43,21 +49,52 @@ pub struct CycleProblem<'a> {
     pub(super) unit: f64,
     /// The phase condition: at each Gauss point the derivative of the reference orbit, weighted.
     phase: Vec<f64>,
+    /// The same as a row over the unknowns of each interval.
+    border: Vec<f64>,
     mass: Option<Dense>,
+    /// Whether the metric of the unknowns is the identity.
+    plain: bool,
     work: RefCell<Work>,
 }
 
 struct Work {
+    /// States at the Gauss points of an interval, and their derivatives times its length.
     u: Vec<f64>,
     du: Vec<f64>,
+    /// The unknowns of an interval, its right end included.
+    nodes: Vec<f64>,
     f: Vec<f64>,
     jacobian: AnyMatrix,
+    /// Its entries, row by row.
+    slopes: Vec<f64>,
     unit: Vec<f64>,
+    /// For the metric.
+    weighed: Vec<f64>,
     /// The state and the parameters whose multipliers are known.
-    at: Vec<f64>,
-    known: Vec<Multiplier>,
+    known: Known,
+    /// Where and in which direction the slopes of their functions are known, and these.
+    along: Vec<f64>,
+    slopes_along: [f64; 2],
+    shifted: Vec<f64>,
+    latest: Latest,
     /// For the multipliers alone.
     matrix: Option<CycleMatrix>,
+}
+
+/// The multipliers at a state.
+#[derive(Default)]
+struct Known {
+    /// The state and the parameters.
+    at: Vec<f64>,
+    multipliers: Vec<Multiplier>,
+    tests: [f64; 2],
+}
+
+impl Known {
+    fn is_at(&self, x: &[f64], p: &[f64]) -> bool {
+        let known = self.at.len() == x.len() + p.len();
+        known && self.at[..x.len()] == *x && self.at[x.len()..] == *p
+    }
 }
 
 /// A dense copy of a constant mass matrix, if it has full rank.
@@ -78,6 +115,18 @@ pub(super) fn mass(problem: &DynProblem<'_>) -> Result<Option<Dense>, CycleError
     }
     let facts = full.factor(f64::EPSILON * n as f64 * full.norm());
     if facts.perturbed > 0 { Err(CycleError::SingularMass) } else { Ok(Some(full)) }
+}
+
+/// Whether the metric leaves every unit vector as it is.
+fn is_plain(problem: &DynProblem<'_>) -> bool {
+    let n = problem.dim();
+    let (mut unit, mut y) = (vec![0.0; n], vec![0.0; n]);
+    (0..n).all(|c| {
+        unit.fill(0.0);
+        unit[c] = 1.0;
+        problem.metric(&unit, &mut y);
+        y == unit
+    })
 }
 
 impl<'a> CycleProblem<'a> {
@@ -104,52 +153,79 @@ impl<'a> CycleProblem<'a> {
         let basis = Basis::new(cycle.degree);
         let (mesh, m) = (cycle.mesh.clone(), cycle.degree);
         let intervals = mesh.len() - 1;
-        let orbit = Orbit { n, mesh: &mesh, values: &cycle.values, basis: &basis };
-        let mut phase = vec![0.0; intervals * m * n];
-        let (mut slope, mut weighted) = (vec![0.0; n], vec![0.0; n]);
-        let mut square = 0.0;
-        for j in 0..intervals {
-            let h = mesh[j + 1] - mesh[j];
-            for i in 0..m {
-                slope.fill(0.0);
-                for (k, by) in basis.slopes[i].iter().enumerate() {
-                    slope.iter_mut().zip(orbit.node(j, k)).for_each(|(s, u)| *s += by * u);
-                }
-                problem.metric(&slope, &mut weighted);
-                // slope is h u', and the weight of the point h w
-                square += basis.weights[i] * dot(&slope, &weighted) / h;
-                let place = &mut phase[(j * m + i) * n..(j * m + i + 1) * n];
-                place.iter_mut().zip(&weighted).for_each(|(p, x)| *p = basis.weights[i] * x);
-            }
-        }
-        let norm = square.sqrt();
+        let work = Work {
+            u: vec![0.0; n * m],
+            du: vec![0.0; n * m],
+            nodes: vec![0.0; n * (m + 1)],
+            f: vec![0.0; n],
+            jacobian: problem.new_jacobian(),
+            slopes: vec![0.0; n * n],
+            unit: vec![0.0; n],
+            weighed: vec![0.0; 2 * n],
+            known: Known::default(),
+            along: Vec::new(),
+            slopes_along: [0.0; 2],
+            shifted: vec![0.0; intervals * m * n + 1],
+            latest: Latest::default(),
+            matrix: None,
+        };
+        let mut equations = CycleProblem {
+            problem,
+            n,
+            mesh,
+            unit: 1.0,
+            phase: vec![0.0; intervals * m * n],
+            border: vec![0.0; intervals * (m + 1) * n],
+            mass: mass(problem)?,
+            plain: is_plain(problem),
+            work: RefCell::new(work),
+            basis,
+        };
+        let norm = equations.refer(&cycle.values, cycle.period);
         let size = crate::linalg::max_abs(&cycle.values);
         if !(norm.is_finite() && norm > 0.0 && cycle.amplitude() > CONSTANT * size) {
             return Err(CycleError::Constant);
         }
+        Ok(equations)
+    }
+
+    /// Makes an orbit on the same mesh the reference of the phase condition; the norm of its derivative.
+    pub(super) fn refer(&mut self, values: &[f64], period: f64) -> f64 {
+        let (n, m) = (self.n, self.basis.degree);
+        let k = n * m;
+        let mut phase = std::mem::take(&mut self.phase);
+        let mut square = 0.0;
+        {
+            let Work { u, du, nodes, known, along, .. } = &mut *self.work.borrow_mut();
+            known.at.clear();
+            along.clear();
+            for j in 0..self.intervals() {
+                let h = self.mesh[j + 1] - self.mesh[j];
+                self.interpolate(values, j, nodes, u, du);
+                // the slope is h u', and the weight of the point h w
+                let places = phase[j * k..(j + 1) * k].chunks_exact_mut(n);
+                for ((slope, place), w) in du.chunks_exact(n).zip(places).zip(&self.basis.weights) {
+                    self.problem.metric(slope, place);
+                    square += w * dot(slope, place) / h;
+                    place.iter_mut().for_each(|p| *p *= w);
+                }
+            }
+        }
+        let norm = square.sqrt();
         phase.iter_mut().for_each(|x| *x /= norm);
+        self.border.fill(0.0);
+        for (row, phase) in self.border.chunks_exact_mut(k + n).zip(phase.chunks_exact(k)) {
+            for (i, phase) in phase.chunks_exact(n).enumerate() {
+                for (l, place) in row.chunks_exact_mut(n).enumerate() {
+                    let by = self.basis.values[i * (m + 1) + l];
+                    place.iter_mut().zip(phase).for_each(|(r, p)| *r += by * p);
+                }
+            }
+        }
+        self.phase = phase;
         // |u'| over 2π: the amplitude of the orbit if it is a circle
-        let unit = norm / (2.0 * std::f64::consts::PI) / cycle.period;
-        let work = Work {
-            u: vec![0.0; n],
-            du: vec![0.0; n],
-            f: vec![0.0; n],
-            jacobian: problem.new_jacobian(),
-            unit: vec![0.0; n],
-            at: Vec::new(),
-            known: Vec::new(),
-            matrix: None,
-        };
-        Ok(CycleProblem {
-            problem,
-            n,
-            mesh,
-            unit,
-            phase,
-            mass: mass(problem)?,
-            work: RefCell::new(work),
-            basis,
-        })
+        self.unit = norm / (2.0 * std::f64::consts::PI) / period;
+        norm
     }
 
     /// Number of intervals.
@@ -196,28 +272,38 @@ impl<'a> CycleProblem<'a> {
     pub fn multipliers(&self, x: &[f64], p: &[f64]) -> Result<Vec<Multiplier>, EvalError> {
         let work = &mut *self.work.borrow_mut();
         self.find_multipliers(work, x, p)?;
-        Ok(work.known.clone())
+        Ok(work.known.multipliers.clone())
     }
 
     fn find_multipliers(&self, work: &mut Work, x: &[f64], p: &[f64]) -> Result<(), EvalError> {
-        let known = work.at.len() == x.len() + p.len()
-            && work.at[..x.len()] == *x
-            && work.at[x.len()..] == *p;
-        if known {
+        if work.known.is_at(x, p) {
             return Ok(());
         }
-        work.at.clear();
+        let mut known = std::mem::take(&mut work.known);
+        known.at.clear();
+        let found = self.multipliers_at(work, x, p);
+        work.known = known;
+        work.known.tests = functions(found.as_ref().map_or(&[], Vec::as_slice));
+        work.known.multipliers = found?;
+        work.known.at.extend_from_slice(x);
+        work.known.at.extend_from_slice(p);
+        Ok(())
+    }
+
+    fn multipliers_at(
+        &self,
+        work: &mut Work,
+        x: &[f64],
+        p: &[f64],
+    ) -> Result<Vec<Multiplier>, EvalError> {
         let mut matrix = work.matrix.take().unwrap_or_else(|| self.new_jacobian());
-        let found = self.assemble(work, x, p, &mut matrix).and_then(|()| {
-            matrix.condense();
-            multipliers(self.n, self.intervals(), |j, r, c| matrix.transfer(j, r, c))
+        let found = self.assemble(work, x, p, None, &mut matrix).and_then(|()| {
+            matrix.condense(false);
+            multipliers(self.n, matrix.transfers(), &mut work.latest)
                 .ok_or(EvalError::NotFinite { at: 0 })
         });
         work.matrix = Some(matrix);
-        work.known = found?;
-        work.at.extend_from_slice(x);
-        work.at.extend_from_slice(p);
-        Ok(())
+        found
     }
 
     /// The solution `w` of the linearised equations with `w(T) = −w(0)`, at the nodes, of length 1 in the
@@ -225,11 +311,13 @@ impl<'a> CycleProblem<'a> {
     pub(super) fn flip(&self, x: &[f64], p: &[f64]) -> Result<Option<Vec<f64>>, EvalError> {
         let size = self.dim();
         let mut matrix = CycleMatrix::new(self.n, self.basis.degree, self.intervals(), -1.0);
-        self.assemble(&mut self.work.borrow_mut(), x, p, &mut matrix)?;
-        for block in &mut matrix.blocks {
-            block.column.fill(0.0);
-            block.row.fill(0.0);
-            block.row_left.fill(0.0);
+        self.assemble(&mut self.work.borrow_mut(), x, p, None, &mut matrix)?;
+        let wide = self.n * (self.basis.degree + 1) + 1;
+        for j in 0..self.intervals() {
+            let block = matrix.block_mut(j);
+            let rows = block.len() / wide - 1;
+            block.iter_mut().skip(wide - 1).step_by(wide).for_each(|column| *column = 0.0);
+            block[rows * wide..].fill(0.0);
         }
         matrix.corner = 1.0;
         matrix.factor(0.0);
@@ -249,12 +337,12 @@ impl<'a> CycleProblem<'a> {
     /// Cosine between the derivatives of the orbit and of the reference.
     pub(super) fn alignment(&self, x: &[f64]) -> f64 {
         let (n, m) = (self.n, self.basis.degree);
-        let Work { u, du, f, .. } = &mut *self.work.borrow_mut();
+        let Work { u, du, nodes, f, .. } = &mut *self.work.borrow_mut();
         let (mut along, mut square) = (0.0, 0.0);
         for j in 0..self.intervals() {
             let h = self.mesh[j + 1] - self.mesh[j];
-            for i in 0..m {
-                self.interpolate(x, (j, i), u, du);
+            self.interpolate(x, j, nodes, u, du);
+            for (i, du) in du.chunks_exact(n).enumerate() {
                 let at = (j * m + i) * n;
                 along += dot(&self.phase[at..at + n], du) / h;
                 self.problem.metric(du, f);
@@ -264,131 +352,90 @@ impl<'a> CycleProblem<'a> {
         along / square.sqrt()
     }
 
-    /// State and derivative, times the interval's length, at Gauss point `i` of interval `j`.
-    fn interpolate(&self, x: &[f64], (j, i): (usize, usize), u: &mut [f64], du: &mut [f64]) {
-        let orbit = self.orbit(x);
-        u.fill(0.0);
-        du.fill(0.0);
-        for k in 0..=self.basis.degree {
-            let (value, slope) = (self.basis.values[i][k], self.basis.slopes[i][k]);
-            for ((u, du), node) in u.iter_mut().zip(du.iter_mut()).zip(orbit.node(j, k)) {
-                *u += value * node;
-                *du += slope * node;
-            }
-        }
+    /// States and derivatives, times the interval's length, at the Gauss points of interval `j`; its
+    /// unknowns are copied to `nodes`.
+    fn interpolate(&self, x: &[f64], j: usize, nodes: &mut [f64], u: &mut [f64], du: &mut [f64]) {
+        let (n, k) = (self.n, self.n * self.basis.degree);
+        nodes[..k].copy_from_slice(&x[j * k..(j + 1) * k]);
+        let right = if j + 1 == self.intervals() { 0 } else { (j + 1) * k };
+        nodes[k..].copy_from_slice(&x[right..right + n]);
+        sized!(n, k, interpolate(&self.basis, nodes, u, du));
     }
 
+    /// The Jacobian, and the residual if it is asked for.
     fn assemble(
         &self,
         work: &mut Work,
         x: &[f64],
         p: &[f64],
+        mut residual: Option<&mut [f64]>,
         matrix: &mut CycleMatrix,
     ) -> Result<(), EvalError> {
-        let (n, m) = (self.n, self.basis.degree);
-        let period = x[self.dim() - 1] / self.unit;
-        matrix.set_zero();
+        let (n, m, end) = (self.n, self.basis.degree, self.dim() - 1);
+        let (k, wide) = (n * m, n * m + n + 1);
+        let period = self.period(x)?;
+        matrix.corner = 0.0;
+        let mut phase = 0.0;
         for j in 0..self.intervals() {
             let h = self.mesh[j + 1] - self.mesh[j];
-            let block = &mut matrix.blocks[j];
-            for i in 0..m {
-                let Work { u, du, f, jacobian, unit, .. } = work;
-                self.interpolate(x, (j, i), u, du);
+            let block = matrix.block_mut(j);
+            let Work { u, du, nodes, f, jacobian, slopes, unit, .. } = work;
+            self.interpolate(x, j, nodes, u, du);
+            for (i, u) in u.chunks_exact(n).enumerate() {
                 self.problem.linearise(u, p, f, jacobian)?;
                 check_pattern(jacobian)?;
-                let row = i * n;
-                for (r, f) in f.iter().enumerate() {
-                    block.column[row + r] = -h / self.unit * f;
-                }
-                let (values, slopes) = (&self.basis.values[i], &self.basis.slopes[i]);
-                let size = n * m;
-                let mut add = |r: usize, c: usize, value: f64, by: &[f64]| {
-                    block.left[row + r + c * size] += by[0] * value;
-                    for (k, by) in by.iter().enumerate().skip(1) {
-                        block.inner.add(row + r, (k - 1) * n + c, by * value);
-                    }
-                };
-                match &self.mass {
-                    None => (0..n).for_each(|r| add(r, r, 1.0, slopes)),
-                    Some(mass) => {
-                        for c in 0..n {
-                            (0..n).for_each(|r| add(r, c, mass.get(r, c), slopes));
+                check_finite(f)?;
+                rows_of(jacobian, slopes, unit);
+                let rows = &mut block[i * n * wide..(i + 1) * n * wide];
+                let scale = -h * period;
+                sized!(n, k, fill(&self.basis, i, (scale, -h / self.unit), (slopes, f), rows));
+                if let Some(mass) = &self.mass {
+                    let by = &self.basis.slopes[i * (m + 1)..(i + 1) * (m + 1)];
+                    for (r, row) in rows.chunks_exact_mut(wide).enumerate() {
+                        for (place, by) in row.chunks_exact_mut(n).zip(by) {
+                            place[r] -= by;
+                            (0..n).for_each(|c| place[c] += by * mass.get(r, c));
                         }
                     }
                 }
-                let scale = -h * period;
-                if !jacobian.entries(&mut |r, c, value| add(r, c, scale * value, values)) {
-                    for c in 0..n {
-                        unit.fill(0.0);
-                        unit[c] = 1.0;
-                        jacobian.mul(unit, du);
-                        (0..n).for_each(|r| add(r, c, scale * du[r], values));
-                    }
-                }
-                let phase = &self.phase[(j * m + i) * n..(j * m + i + 1) * n];
-                for (k, by) in values.iter().enumerate() {
-                    let place = if k == 0 {
-                        &mut block.row_left[..]
-                    } else {
-                        &mut block.row[(k - 1) * n..k * n]
-                    };
-                    place.iter_mut().zip(phase).for_each(|(r, p)| *r += by * p);
+                if let Some(residual) = &mut residual {
+                    self.row(
+                        &du[i * n..(i + 1) * n],
+                        f,
+                        h * period,
+                        &mut residual[j * k + i * n..],
+                    );
                 }
             }
+            let border = &self.border[j * (k + n)..(j + 1) * (k + n)];
+            block[k * wide..(k + 1) * wide - 1].copy_from_slice(border);
+            block[(k + 1) * wide - 1] = 0.0;
+            phase += dot(border, nodes);
+        }
+        if let Some(residual) = residual {
+            residual[end] = phase;
         }
         Ok(())
     }
 
-    /// The two functions of the multipliers: `(Π(1 + μ), Π(μ_i μ_j − 1))`, over the root of the sum of the
-    /// squares of the polynomials' coefficients, the trivial multiplier left out of the second.
-    fn tests(known: &[Multiplier]) -> [f64; 2] {
-        let doubling = normalised(known.iter().map(|m| (m.log_modulus, m.argument)), -1.0);
-        let trivial = super::point::trivial(known);
-        let others: Vec<&Multiplier> =
-            known.iter().enumerate().filter(|(i, _)| Some(*i) != trivial).map(|(_, m)| m).collect();
-        let pairs = others.iter().enumerate().flat_map(|(i, a)| {
-            others[i + 1..]
-                .iter()
-                .map(move |b| (a.log_modulus + b.log_modulus, a.argument + b.argument))
-        });
-        [doubling, normalised(pairs, 1.0)]
-    }
-}
-
-/// `Π(μ − z)`, `z` 1 or −1, over the root of the sum of the squares of the coefficients of the
-/// polynomial `Π(μ + x)`: at most of order one whatever the sizes of the numbers, and as smooth.
-fn normalised(values: impl Iterator<Item = (f64, f64)>, z: f64) -> f64 {
-    let (mut coefficients, mut product) = (vec![(1.0, 0.0)], (1.0, 0.0));
-    let times = |a: (f64, f64), b: (f64, f64)| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
-    for (log, argument) in values {
-        // large numbers by their reciprocals: a common factor
-        let (value, one) = if log > 0.0 {
-            let turn = if argument.abs() == std::f64::consts::PI {
-                (-1.0, 0.0)
-            } else {
-                (argument.cos(), argument.sin())
-            };
-            (turn, (-log).exp())
-        } else {
-            let size = log.exp();
-            let turn = if argument.abs() == std::f64::consts::PI {
-                (-size, 0.0)
-            } else {
-                (size * argument.cos(), size * argument.sin())
-            };
-            (turn, 1.0)
-        };
-        product = times(product, (value.0 - z * one, value.1));
-        let before = coefficients.clone();
-        coefficients.push((0.0, 0.0));
-        for (k, c) in coefficients.iter_mut().enumerate() {
-            let low = before.get(k).map_or((0.0, 0.0), |b| times(*b, value));
-            let high = if k > 0 { before[k - 1] } else { (0.0, 0.0) };
-            *c = (low.0 + one * high.0, low.1 + one * high.1);
+    /// `M u′ − h T f` at one Gauss point.
+    fn row(&self, du: &[f64], f: &[f64], by: f64, out: &mut [f64]) {
+        let out = &mut out[..self.n];
+        match &self.mass {
+            None => out.copy_from_slice(du),
+            Some(mass) => mass.mul(du, out),
         }
+        out.iter_mut().zip(f).for_each(|(r, f)| *r -= by * f);
     }
-    let size = coefficients.iter().map(|c| c.0 * c.0 + c.1 * c.1).sum::<f64>().sqrt();
-    product.0 / size
+
+    fn period(&self, x: &[f64]) -> Result<f64, EvalError> {
+        let at = self.dim() - 1;
+        let value = x[at] / self.unit;
+        if value > 0.0 {
+            return Ok(value);
+        }
+        Err(EvalError::Inadmissible { what: "the period is not positive", at, value })
+    }
 }
 
 impl Problem for CycleProblem<'_> {
@@ -409,37 +456,34 @@ impl Problem for CycleProblem<'_> {
     /// `M u′ − h T f` at the Gauss points, and the phase condition.
     fn residual(&self, x: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
         let (n, m, end) = (self.n, self.basis.degree, self.dim() - 1);
-        let Work { u, du, f, .. } = &mut *self.work.borrow_mut();
-        let period = x[end] / self.unit;
-        if period.is_nan() || period <= 0.0 {
-            return Err(EvalError::Inadmissible {
-                what: "the period is not positive",
-                at: end,
-                value: period,
-            });
-        }
+        let Work { u, du, nodes, f, .. } = &mut *self.work.borrow_mut();
+        let (period, k) = (self.period(x)?, n * m);
         r[end] = 0.0;
         for j in 0..self.intervals() {
             let h = self.mesh[j + 1] - self.mesh[j];
-            for i in 0..m {
-                self.interpolate(x, (j, i), u, du);
+            self.interpolate(x, j, nodes, u, du);
+            for (i, (u, du)) in u.chunks_exact(n).zip(du.chunks_exact(n)).enumerate() {
                 self.problem.residual(u, p, f)?;
                 check_finite(f)?;
-                let at = (j * m + i) * n;
-                let place = &mut r[at..at + n];
-                match &self.mass {
-                    None => place.copy_from_slice(du),
-                    Some(mass) => mass.mul(du, place),
-                }
-                place.iter_mut().zip(f.iter()).for_each(|(r, f)| *r -= h * period * f);
-                r[end] += dot(&self.phase[at..at + n], u);
+                self.row(du, f, h * period, &mut r[j * k + i * n..]);
             }
+            r[end] += dot(&self.border[j * (k + n)..(j + 1) * (k + n)], nodes);
         }
         Ok(())
     }
 
     fn jacobian(&self, x: &[f64], p: &[f64], j: &mut CycleMatrix) -> Result<(), EvalError> {
-        self.assemble(&mut self.work.borrow_mut(), x, p, j)
+        self.assemble(&mut self.work.borrow_mut(), x, p, None, j)
+    }
+
+    fn linearise(
+        &self,
+        x: &[f64],
+        p: &[f64],
+        r: &mut [f64],
+        j: &mut CycleMatrix,
+    ) -> Result<(), EvalError> {
+        self.assemble(&mut self.work.borrow_mut(), x, p, Some(r), j)
     }
 
     fn parameter_derivative(
@@ -449,17 +493,16 @@ impl Problem for CycleProblem<'_> {
         which: ParamId,
         out: &mut [f64],
     ) -> Result<(), EvalError> {
-        let (n, m, end) = (self.n, self.basis.degree, self.dim() - 1);
-        let Work { u, du, f, .. } = &mut *self.work.borrow_mut();
-        let period = x[end] / self.unit;
+        let (n, end) = (self.n, self.dim() - 1);
+        let Work { u, du, nodes, f, .. } = &mut *self.work.borrow_mut();
+        let period = self.period(x)?;
         out[end] = 0.0;
-        for j in 0..self.intervals() {
+        for (j, out) in out[..end].chunks_exact_mut(u.len()).enumerate() {
             let h = self.mesh[j + 1] - self.mesh[j];
-            for i in 0..m {
-                self.interpolate(x, (j, i), u, du);
+            self.interpolate(x, j, nodes, u, du);
+            for (u, out) in u.chunks_exact(n).zip(out.chunks_exact_mut(n)) {
                 self.problem.parameter_derivative(u, p, which, f)?;
-                let place = &mut out[(j * m + i) * n..(j * m + i + 1) * n];
-                place.iter_mut().zip(f.iter()).for_each(|(o, f)| *o = -h * period * f);
+                out.iter_mut().zip(f.iter()).for_each(|(o, f)| *o = -h * period * f);
             }
         }
         Ok(())
@@ -474,18 +517,19 @@ impl Problem for CycleProblem<'_> {
         dp: f64,
         out: &mut [f64],
     ) -> Result<(), EvalError> {
-        let (n, m, end) = (self.n, self.basis.degree, self.dim() - 1);
-        let Work { u, du, f, unit, .. } = &mut *self.work.borrow_mut();
-        let period = x[end] / self.unit;
+        let (n, end) = (self.n, self.dim() - 1);
+        let Work { u, du, nodes, f, .. } = &mut *self.work.borrow_mut();
+        let period = self.period(x)?;
+        let mut along = vec![0.0; u.len()];
         out[end] = 0.0;
-        for j in 0..self.intervals() {
+        for (j, out) in out[..end].chunks_exact_mut(u.len()).enumerate() {
             let h = self.mesh[j + 1] - self.mesh[j];
-            for i in 0..m {
-                self.interpolate(x, (j, i), u, du);
-                self.interpolate(dx, (j, i), unit, du);
-                self.problem.derivative_error(u, p, which, unit, dp, f)?;
-                let place = &mut out[(j * m + i) * n..(j * m + i + 1) * n];
-                place.iter_mut().zip(f.iter()).for_each(|(o, f)| *o = h * period * f);
+            self.interpolate(x, j, nodes, u, du);
+            self.interpolate(dx, j, nodes, &mut along, du);
+            let states = u.chunks_exact(n).zip(along.chunks_exact(n));
+            for ((u, along), out) in states.zip(out.chunks_exact_mut(n)) {
+                self.problem.derivative_error(u, p, which, along, dp, f)?;
+                out.iter_mut().zip(f.iter()).for_each(|(o, f)| *o = h * period * f);
             }
         }
         Ok(())
@@ -493,22 +537,30 @@ impl Problem for CycleProblem<'_> {
 
     fn metric(&self, x: &[f64], y: &mut [f64]) {
         let (n, m, end) = (self.n, self.basis.degree, self.dim() - 1);
-        let Work { u, du, f, .. } = &mut *self.work.borrow_mut();
-        y[..end].fill(0.0);
-        y[end] = x[end];
-        let nodes = self.intervals() * m;
-        for j in 0..self.intervals() {
-            let h = self.mesh[j + 1] - self.mesh[j];
-            for i in 0..m {
-                self.interpolate(x, (j, i), u, du);
-                self.problem.metric(u, f);
-                for (k, value) in self.basis.values[i].iter().enumerate() {
-                    let at = (j * m + k) % nodes * n;
-                    let weight = h * self.basis.weights[i] * value;
-                    y[at..at + n].iter_mut().zip(f.iter()).for_each(|(y, f)| *y += weight * f);
-                }
+        let Work { weighed, nodes, .. } = &mut *self.work.borrow_mut();
+        let (k, last) = (n * m, self.intervals() - 1);
+        // the metric of the unknowns first: it is the same everywhere
+        if self.plain {
+            y[..end].copy_from_slice(&x[..end]);
+        } else {
+            for (x, y) in x[..end].chunks_exact(n).zip(y.chunks_exact_mut(n)) {
+                self.problem.metric(x, y);
             }
         }
+        // the first state, and what an interval adds to its right end until that is reached
+        let (first, pending) = weighed.split_at_mut(n);
+        first.copy_from_slice(&y[..n]);
+        pending.fill(0.0);
+        for j in 0..=last {
+            let h = self.mesh[j + 1] - self.mesh[j];
+            nodes[..k].copy_from_slice(&y[j * k..(j + 1) * k]);
+            let right = if j == last { &*first } else { &y[(j + 1) * k..(j + 1) * k + n] };
+            nodes[k..].copy_from_slice(right);
+            let place = &mut y[j * k..(j + 1) * k];
+            sized!(n, k, weigh(&self.basis, h, nodes, place, pending));
+        }
+        y[..n].iter_mut().zip(pending).for_each(|(y, by)| *y += *by);
+        y[end] = x[end];
     }
 
     fn observables(&self) -> &[&'static str] {
@@ -518,8 +570,49 @@ impl Problem for CycleProblem<'_> {
     fn observe(&self, x: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
         let work = &mut *self.work.borrow_mut();
         self.find_multipliers(work, x, p)?;
-        let [doubling, torus] = Self::tests(&work.known);
+        let [doubling, torus] = work.known.tests;
         out.copy_from_slice(&[x[self.dim() - 1] / self.unit, doubling, torus]);
         Ok(())
+    }
+
+    /// By central differences, of both functions of the multipliers at once; those at `x` stay known.
+    fn observable_slope(
+        &self,
+        k: usize,
+        x: &[f64],
+        p: &[f64],
+        which: ParamId,
+        dx: &[f64],
+        dp: f64,
+    ) -> Result<Option<f64>, EvalError> {
+        if k == 0 {
+            return Ok(Some(dx[self.dim() - 1] / self.unit));
+        }
+        let work = &mut *self.work.borrow_mut();
+        let key = || x.iter().chain(p).chain(dx).chain(std::iter::once(&dp));
+        if !work.along.iter().eq(key()) {
+            work.along.clear();
+            let mut q = p.to_vec();
+            let mut shifted = std::mem::take(&mut work.shifted);
+            let mut sides = [[0.0; 2]; 2];
+            let mut complete = true;
+            for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+                let step = sign * SHIFT;
+                q[which.0] = p[which.0] + step * dp;
+                shifted.iter_mut().zip(x.iter().zip(dx)).for_each(|(s, (x, d))| *s = x + step * d);
+                match self.multipliers_at(work, &shifted, &q) {
+                    Ok(found) => *side = functions(&found),
+                    Err(_) => complete = false,
+                }
+            }
+            work.shifted = shifted;
+            if !complete {
+                // no value there: what is tried next says why
+                return Ok(None);
+            }
+            work.slopes_along = [0, 1].map(|i| (sides[0][i] - sides[1][i]) / (2.0 * SHIFT));
+            work.along.extend(key());
+        }
+        Ok(Some(work.slopes_along[k - 1]))
     }
 }

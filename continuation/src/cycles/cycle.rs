@@ -6,12 +6,16 @@ use super::mesh::{Orbit, halved, uniform};
 use super::settings::CycleSettings;
 use crate::any_problem::DynProblem;
 use crate::branch::EventKind;
+use crate::codim2::CurveError;
 use crate::newton::{self, NewtonError, NewtonSettings};
 use crate::problem::{EvalError, Problem};
 use crate::settings::SettingsError;
 use crate::step::Refusal;
 use crate::tracer::TraceError;
 use serde::{Deserialize, Serialize};
+
+/// Part of the error that is left at most where more intervals help.
+const FUTILE: f64 = 0.5;
 
 /// Why there is no cycle, or no branch of cycles.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -95,6 +99,9 @@ pub enum CycleError {
     /// The branch could not begin.
     #[error(transparent)]
     Trace(#[from] TraceError),
+    /// The curve in two parameters could not begin.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
 }
 
 /// A periodic orbit `u(t) = u(t + T)`, a piecewise polynomial.
@@ -346,6 +353,7 @@ impl Cycle {
         let basis = Basis::new(self.degree);
         let mut cycle = self.clone();
         let mut intervals = settings.intervals.max(self.mesh.len() - 1);
+        let mut before: Option<(Cycle, f64)> = None;
         for round in 0..4 {
             let n = cycle.dim();
             let orbit = Orbit { n, mesh: &cycle.mesh, values: &cycle.values, basis: &basis };
@@ -357,6 +365,13 @@ impl Cycle {
             };
             cycle = next;
             let Some(error) = cycle.discretisation_error(problem) else { break };
+            // more intervals do not help against rounding, which is large near a singular point
+            if let Some((fewer, larger)) = before.take()
+                && fewer.mesh.len() < cycle.mesh.len()
+                && error > FUTILE * larger
+            {
+                return Ok(if error < larger { cycle } else { fewer });
+            }
             if error <= settings.accuracy {
                 // once more on the mesh of a good orbit
                 if round > 0 {
@@ -367,6 +382,7 @@ impl Cycle {
             let power = 1.0 / (2.0 * self.degree as f64);
             let grown = (1.3 * (error / settings.accuracy).powf(power)).clamp(1.3, 3.0);
             intervals = ((intervals as f64 * grown).ceil() as usize).min(settings.max_intervals);
+            before = Some((cycle.clone(), error));
         }
         Ok(cycle)
     }

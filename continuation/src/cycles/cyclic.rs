@@ -10,24 +10,84 @@
 
 use crate::linalg::{Dense, Facts, Matrix};
 
+/// Calls a method with the size of a block as a constant where it is small.
+macro_rules! sized {
+    ($n:expr, $this:ident.$method:ident($($argument:expr),*)) => {
+        match $n {
+            1 => $this.$method(1, $($argument),*),
+            2 => $this.$method(2, $($argument),*),
+            3 => $this.$method(3, $($argument),*),
+            4 => $this.$method(4, $($argument),*),
+            n => $this.$method(n, $($argument),*),
+        }
+    };
+}
+
 /// The rows that determine one block of unknowns.
-#[derive(Debug, Clone)]
-struct Stage {
+struct Stage<'s> {
     /// Factors of the two block rows, `2n × n` by columns.
-    lu: Vec<f64>,
-    pivots: Vec<usize>,
+    lu: &'s [f64],
+    pivots: &'s [usize],
     /// Coefficients of the first block, of the next one and of `θ` in the pivot rows.
-    first: Vec<f64>,
-    next: Vec<f64>,
-    border: Vec<f64>,
+    first: &'s [f64],
+    next: &'s [f64],
+    border: &'s [f64],
     /// Multiples of the pivot rows in the border's row.
-    multiples: Vec<f64>,
+    multiples: &'s [f64],
+}
+
+/// The same, to be filled.
+struct StageMut<'s> {
+    lu: &'s mut [f64],
+    pivots: &'s mut [usize],
+    first: &'s mut [f64],
+    next: &'s mut [f64],
+    border: &'s mut [f64],
+    multiples: &'s mut [f64],
+}
+
+/// Numbers of one stage.
+const fn size(n: usize) -> usize {
+    4 * n * n + 2 * n
+}
+
+#[inline(always)]
+fn stages<'s>(
+    n: usize,
+    numbers: &'s [f64],
+    pivots: &'s [usize],
+) -> impl DoubleEndedIterator<Item = Stage<'s>> + ExactSizeIterator {
+    numbers.chunks_exact(size(n)).zip(pivots.chunks_exact(n)).map(move |(numbers, pivots)| {
+        let (lu, rest) = numbers.split_at(2 * n * n);
+        let (first, rest) = rest.split_at(n * n);
+        let (next, rest) = rest.split_at(n * n);
+        let (border, multiples) = rest.split_at(n);
+        Stage { lu, pivots, first, next, border, multiples }
+    })
+}
+
+#[inline(always)]
+fn stages_mut<'s>(
+    n: usize,
+    numbers: &'s mut [f64],
+    pivots: &'s mut [usize],
+) -> impl Iterator<Item = StageMut<'s>> {
+    let all = numbers.chunks_exact_mut(size(n)).zip(pivots.chunks_exact_mut(n));
+    all.map(move |(numbers, pivots)| {
+        let (lu, rest) = numbers.split_at_mut(2 * n * n);
+        let (first, rest) = rest.split_at_mut(n * n);
+        let (next, rest) = rest.split_at_mut(n * n);
+        let (border, multiples) = rest.split_at_mut(n);
+        StageMut { lu, pivots, first, next, border, multiples }
+    })
 }
 
 #[derive(Debug, Clone)]
 pub(super) struct Cyclic {
     n: usize,
-    stages: Vec<Stage>,
+    /// The stages, one after the other.
+    numbers: Vec<f64>,
+    pivots: Vec<usize>,
     last: Dense,
     /// Scale of the column of `θ` in the last system.
     scale: f64,
@@ -39,17 +99,10 @@ pub(super) struct Cyclic {
 
 impl Cyclic {
     pub(super) fn new(n: usize, intervals: usize) -> Self {
-        let stage = Stage {
-            lu: vec![0.0; 2 * n * n],
-            pivots: vec![0; n],
-            first: vec![0.0; n * n],
-            next: vec![0.0; n * n],
-            border: vec![0.0; n],
-            multiples: vec![0.0; n],
-        };
         Cyclic {
             n,
-            stages: vec![stage; intervals - 1],
+            numbers: vec![0.0; size(n) * (intervals - 1)],
+            pivots: vec![0; n * (intervals - 1)],
             last: Dense::new(n + 1),
             scale: 1.0,
             carry: [vec![0.0; n * n], vec![0.0; n * n], vec![0.0; n]],
@@ -58,16 +111,28 @@ impl Cyclic {
         }
     }
 
-    /// Factors the system. `x(j)`, `z(j)` are the blocks, by columns; `q` holds the rows `q_j`, one after
-    /// the other, and is overwritten.
-    pub(super) fn factor<'x>(
+    /// Factors the system. `blocks` holds the `X_j`, by columns, each followed by `z_j`; `q` holds the rows
+    /// `q_j`, one after the other, and is overwritten.
+    pub(super) fn factor(
         &mut self,
         closing: f64,
-        x: impl Fn(usize) -> (&'x [f64], &'x [f64]),
+        blocks: &[f64],
+        q: &mut [f64],
+        corner: f64,
+    ) -> Facts {
+        sized!(self.n, self.factor_sized(closing, blocks, q, corner))
+    }
+
+    #[inline(always)]
+    fn factor_sized(
+        &mut self,
+        n: usize,
+        closing: f64,
+        blocks: &[f64],
         q: &mut [f64],
         mut corner: f64,
     ) -> Facts {
-        let n = self.n;
+        let x = |j: usize| blocks[j * n * (n + 1)..(j + 1) * n * (n + 1)].split_at(n * n);
         let (mut sign, mut perturbed) = (1_i8, 0);
         let [e, f, t] = &mut self.carry;
         let (x0, z0) = x(0);
@@ -75,7 +140,7 @@ impl Cyclic {
         t.copy_from_slice(z0);
         f.fill(0.0);
         (0..n).for_each(|i| f[i + i * n] = 1.0);
-        for (index, stage) in self.stages.iter_mut().enumerate() {
+        for (index, stage) in stages_mut(n, &mut self.numbers, &mut self.pivots).enumerate() {
             let j = index + 1;
             let (xj, zj) = x(j);
             // columns: the first block, the next one and the border
@@ -145,7 +210,7 @@ impl Cyclic {
             for c in 0..n {
                 let dot =
                     |a: &[f64]| -> f64 { (0..n).map(|r| stage.multiples[r] * a[r + c * n]).sum() };
-                let (by_first, by_next) = (dot(&stage.first), dot(&stage.next));
+                let (by_first, by_next) = (dot(stage.first), dot(stage.next));
                 q[c] -= by_first;
                 q[next * n + c] -= factor * by_next;
             }
@@ -178,10 +243,14 @@ impl Cyclic {
     /// Solves in place: `g` holds the blocks `g_j` and becomes `u_{j+1}`, the last one `u_0`; `border`
     /// becomes `θ`.
     pub(super) fn solve(&mut self, closing: f64, g: &mut [f64], border: &mut f64) {
-        let n = self.n;
+        sized!(self.n, self.solve_sized(closing, g, border));
+    }
+
+    #[inline(always)]
+    fn solve_sized(&mut self, n: usize, closing: f64, g: &mut [f64], border: &mut f64) {
         let rows = 2 * n;
         let count = g.len() / n;
-        for (index, stage) in self.stages.iter().enumerate() {
+        for (index, stage) in stages(n, &self.numbers, &self.pivots).enumerate() {
             let pair = &mut g[index * n..(index + 2) * n];
             (0..n).for_each(|c| pair.swap(c, stage.pivots[c]));
             for c in 0..n {
@@ -197,7 +266,7 @@ impl Cyclic {
         self.last.solve(&mut self.tail);
         *border = self.scale * self.tail[n];
         g[(count - 1) * n..].copy_from_slice(&self.tail[..n]);
-        for (index, stage) in self.stages.iter().enumerate().rev() {
+        for (index, stage) in stages(n, &self.numbers, &self.pivots).enumerate().rev() {
             let (head, tail) = g.split_at_mut((index + 1) * n);
             let block = &mut head[index * n..];
             let last = index + 2 == count;
@@ -221,10 +290,14 @@ impl Cyclic {
     /// Solves with the transposed matrix: `c` holds the right sides of the columns `u_1 … u_{N−1}, u_0`
     /// and becomes the unknowns of the rows `0 … N − 1`; `border` likewise.
     pub(super) fn solve_transpose(&mut self, closing: f64, c: &mut [f64], border: &mut f64) {
-        let n = self.n;
+        sized!(self.n, self.solve_transpose_sized(closing, c, border));
+    }
+
+    #[inline(always)]
+    fn solve_transpose_sized(&mut self, n: usize, closing: f64, c: &mut [f64], border: &mut f64) {
         let rows = 2 * n;
         let count = c.len() / n;
-        for (index, stage) in self.stages.iter().enumerate() {
+        for (index, stage) in stages(n, &self.numbers, &self.pivots).enumerate() {
             let (head, tail) = c.split_at_mut((index + 1) * n);
             let block = &mut head[index * n..];
             for r in 0..n {
@@ -236,7 +309,7 @@ impl Cyclic {
             let end = tail.len() - n;
             for k in 0..n {
                 let dot = |a: &[f64]| -> f64 { (0..n).map(|r| block[r] * a[r + k * n]).sum() };
-                let (by_next, by_first) = (dot(&stage.next), dot(&stage.first));
+                let (by_next, by_first) = (dot(stage.next), dot(stage.first));
                 tail[k] -= factor * by_next;
                 tail[end + k] -= by_first;
             }
@@ -247,7 +320,7 @@ impl Cyclic {
         self.last.solve_transpose(&mut self.tail);
         *border = self.tail[n];
         c[(count - 1) * n..].copy_from_slice(&self.tail[..n]);
-        for (index, stage) in self.stages.iter().enumerate().rev() {
+        for (index, stage) in stages(n, &self.numbers, &self.pivots).enumerate().rev() {
             let pair = &mut c[index * n..(index + 2) * n];
             for r in 0..n {
                 pair[r] -= stage.multiples[r] * *border;

@@ -2,7 +2,7 @@
 //! or where it began.
 
 use super::collocation::CycleProblem;
-use super::point::observe;
+use super::observed::observe;
 use super::trace::Run;
 use crate::branch::{Event, EventKind, Point, Stop, StopReason};
 use crate::tracer::Tracer;

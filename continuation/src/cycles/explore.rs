@@ -2,7 +2,7 @@
 
 use super::birth::SmallCycle;
 use super::cycle::{Cycle, CycleError};
-use super::point::observe;
+use super::observed::observe;
 use super::settings::CycleSettings;
 use super::trace::{CycleBranch, trace_of};
 use crate::any_problem::DynProblem;

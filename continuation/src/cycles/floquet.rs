@@ -9,9 +9,12 @@
 use crate::linalg::{Dense, Matrix};
 use serde::{Deserialize, Serialize};
 
-/// Rounds of the iteration around the cycle after which it is looked at, the last one final. Moduli
+/// Rounds of the iteration around the cycle after which it is looked at, the last one final; the first one
+/// only where it begins with what was found near by. Moduli
 /// whose ratio is below 0.6 are separated by the last.
-const LOOKS: [usize; 5] = [3, 6, 12, 30, 75];
+const LOOKS: [usize; 7] = [1, 2, 3, 6, 12, 30, 75];
+/// Steps of the iteration with the product itself, between looks.
+const INNER: usize = 30;
 /// Entries below the diagonal, of orthogonal matrices, that are rounding; times the dimension.
 const SEPARATE: f64 = 32.0 * f64::EPSILON;
 
@@ -61,34 +64,54 @@ impl Multiplier {
     }
 }
 
-/// The eigenvalues of the product of the matrices `g(j)`, `j = 0 … count − 1`, entry by entry: those of
-/// largest modulus first. `None` where an entry is not finite.
-pub(super) fn multipliers(
-    n: usize,
-    count: usize,
-    g: impl Fn(usize, usize, usize) -> f64,
-) -> Option<Vec<Multiplier>> {
-    let mut q: Vec<f64> = vec![0.0; n * n];
-    // not along the axes, which may be invariant in the wrong order
-    for (i, x) in q.iter_mut().enumerate() {
-        *x = crate::singular::arbitrary(3, i);
+/// The eigenvalues of the product of matrices `G_{N−1} … G_0`: those of largest modulus first. `g` has the
+/// `−G_j`, by columns, each followed by another column. `None` where an entry is not finite.
+pub(super) fn multipliers(n: usize, g: &[f64], latest: &mut Latest) -> Option<Vec<Multiplier>> {
+    match n {
+        1 => multipliers_sized(1, g, latest),
+        2 => multipliers_sized(2, g, latest),
+        3 => multipliers_sized(3, g, latest),
+        4 => multipliers_sized(4, g, latest),
+        n => multipliers_sized(n, g, latest),
     }
-    let mut triangle = vec![0.0; n * n];
-    orthogonalise(n, &mut q, &mut triangle);
+}
+
+/// Where the iteration ended for a product near by, from which it begins again: one round usually tells that
+/// the subspaces are invariant still, in whatever order.
+#[derive(Debug, Default)]
+pub(super) struct Latest {
+    q: Vec<f64>,
+    /// Number of diagonal blocks that were told apart.
+    blocks: usize,
+}
+
+#[inline(always)]
+fn multipliers_sized(n: usize, g: &[f64], latest: &mut Latest) -> Option<Vec<Multiplier>> {
+    let count = g.len() / (n * (n + 1));
+    let mut q = std::mem::take(&mut latest.q);
+    let again = q.len() == n * n;
+    if !again {
+        // not along the axes, which may be invariant in the wrong order
+        q = (0..n * n).map(|i| crate::singular::arbitrary(3, i)).collect();
+        orthogonalise(n, &mut q, &mut vec![0.0; n * n]);
+    }
     let mut rounds = 0;
     let (mut triangles, mut start) = (vec![0.0; n * n * count], vec![0.0; n * n]);
     let mut product = vec![0.0; n * n];
-    for (look, until) in LOOKS.into_iter().enumerate() {
+    for (look, until) in LOOKS.into_iter().enumerate().skip(usize::from(!again)) {
         while rounds < until {
             start.copy_from_slice(&q);
-            for j in 0..count {
+            for (g, triangle) in g.chunks_exact(n * (n + 1)).zip(triangles.chunks_exact_mut(n * n))
+            {
+                let (from, to) = (&q[..n * n], &mut product[..n * n]);
                 for c in 0..n {
                     for r in 0..n {
-                        product[r + c * n] = (0..n).map(|k| g(j, r, k) * q[k + c * n]).sum();
+                        to[r + c * n] =
+                            -(0..n).map(|k| g[r + k * n] * from[k + c * n]).sum::<f64>();
                     }
                 }
                 std::mem::swap(&mut q, &mut product);
-                orthogonalise(n, &mut q, &mut triangles[j * n * n..(j + 1) * n * n]);
+                orthogonalise(n, &mut q, triangle);
             }
             rounds += 1;
         }
@@ -103,8 +126,10 @@ pub(super) fn multipliers(
             (0..n).for_each(|r| between[r + c * n] = turned(r, c));
         }
         let blocks = blocks(n, &between);
-        let done = blocks.iter().all(|(from, to)| to - from <= 2);
+        let done = blocks.iter().all(|(from, to)| to - from <= 2)
+            && (look > 0 || blocks.len() >= latest.blocks);
         if done || look + 1 == LOOKS.len() {
+            latest.blocks = blocks.len();
             let mut all = Vec::with_capacity(n);
             for (from, to) in blocks {
                 all.extend(of_block(n, count, (from, to), &between, &triangles)?);
@@ -113,7 +138,11 @@ pub(super) fn multipliers(
                 let order = b.log_modulus.total_cmp(&a.log_modulus);
                 order.then(b.argument.total_cmp(&a.argument))
             });
+            latest.q = q;
             return Some(all);
+        }
+        if let Some((whole, _)) = product_of(n, count, (0, n), &between, &triangles) {
+            improve(n, &whole, &start, &mut q);
         }
     }
     None
@@ -154,26 +183,10 @@ fn of_block(
         let argument = if negative { std::f64::consts::PI } else { 0.0 };
         return Some(vec![Multiplier { log_modulus: log, argument, error: None }]);
     }
-    let mut product = vec![0.0; k * k];
-    (0..k).for_each(|i| product[i + i * k] = 1.0);
-    let (mut log, mut next) = (0.0, vec![0.0; k * k]);
-    for j in 0..=count {
-        for c in 0..k {
-            for r in 0..k {
-                let factor = |r: usize, i: usize| {
-                    if j < count { entry(j, r, i) } else { between[from + r + (from + i) * n] }
-                };
-                next[r + c * k] = (0..k).map(|i| factor(r, i) * product[i + c * k]).sum();
-            }
-        }
-        let size = next.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        if size == 0.0 {
-            let zero = Multiplier { log_modulus: f64::NEG_INFINITY, argument: 0.0, error: None };
-            return Some(vec![zero; k]);
-        }
-        log += size.ln();
-        product.iter_mut().zip(&next).for_each(|(p, x)| *p = x / size);
-    }
+    let Some((product, log)) = product_of(n, count, (from, to), between, triangles) else {
+        let zero = Multiplier { log_modulus: f64::NEG_INFINITY, argument: 0.0, error: None };
+        return Some(vec![zero; k]);
+    };
     let values = if k == 2 {
         pair(product[0], product[2], product[1], product[3])
     } else {
@@ -188,6 +201,61 @@ fn of_block(
         Multiplier { log_modulus: log + re.hypot(im).ln(), argument, error: None }
     };
     Some(values.into_iter().map(multiplier).collect())
+}
+
+/// A diagonal block of the product in the basis of the round's start, over its size, and the logarithm of that;
+/// `None` where it is zero.
+#[inline(always)]
+fn product_of(
+    n: usize,
+    count: usize,
+    (from, to): (usize, usize),
+    between: &[f64],
+    triangles: &[f64],
+) -> Option<(Vec<f64>, f64)> {
+    let k = to - from;
+    let entry = |j: usize, r: usize, c: usize| triangles[j * n * n + from + r + (from + c) * n];
+    let mut product = vec![0.0; k * k];
+    (0..k).for_each(|i| product[i + i * k] = 1.0);
+    let (mut log, mut next) = (0.0, vec![0.0; k * k]);
+    for j in 0..=count {
+        for c in 0..k {
+            for r in 0..k {
+                let factor = |r: usize, i: usize| {
+                    if j < count { entry(j, r, i) } else { between[from + r + (from + i) * n] }
+                };
+                next[r + c * k] = (0..k).map(|i| factor(r, i) * product[i + c * k]).sum();
+            }
+        }
+        let size = next.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        if size == 0.0 {
+            return None;
+        }
+        log += size.ln();
+        product.iter_mut().zip(&next).for_each(|(p, x)| *p = x / size);
+    }
+    Some((product, log))
+}
+
+/// `q = start Z` with the subspaces `Z` of the product.
+#[inline(always)]
+fn improve(n: usize, product: &[f64], start: &[f64], q: &mut [f64]) {
+    let times = |a: &[f64], b: &[f64], out: &mut [f64]| {
+        for c in 0..n {
+            for r in 0..n {
+                out[r + c * n] = (0..n).map(|k| a[r + k * n] * b[k + c * n]).sum();
+            }
+        }
+    };
+    let (mut z, mut next, mut r) = (vec![0.0; n * n], vec![0.0; n * n], vec![0.0; n * n]);
+    (0..n).for_each(|i| z[i + i * n] = 1.0);
+    for _ in 0..INNER {
+        times(product, &z, &mut next);
+        orthogonalise(n, &mut next, &mut r);
+        std::mem::swap(&mut z, &mut next);
+    }
+    times(start, &z, q);
+    orthogonalise(n, q, &mut r);
 }
 
 /// The eigenvalues of `[a b; c d]`.
@@ -205,7 +273,9 @@ fn pair(a: f64, b: f64, c: f64, d: f64) -> Vec<(f64, f64)> {
 }
 
 /// `A = Q R` by modified Gram-Schmidt, done twice; `a` becomes `Q`, with non-negative diagonal of `R`.
+#[inline(always)]
 fn orthogonalise(n: usize, a: &mut [f64], r: &mut [f64]) {
+    let (a, r) = (&mut a[..n * n], &mut r[..n * n]);
     r.fill(0.0);
     for c in 0..n {
         let (done, rest) = a.split_at_mut(c * n);
@@ -255,7 +325,7 @@ fn norm(x: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::multipliers;
+    use super::{Latest, multipliers};
 
     fn random(seed: &mut u64) -> f64 {
         *seed =
@@ -266,6 +336,11 @@ mod tests {
     fn times(n: usize, a: &[f64], b: &[f64]) -> Vec<f64> {
         let at = |i: usize| (0..n).map(|k| a[i % n + k * n] * b[k + i / n * n]).sum();
         (0..n * n).map(at).collect()
+    }
+
+    /// The matrices as they are kept: with the other sign, and a column more.
+    fn joined(n: usize, g: &[Vec<f64>]) -> Vec<f64> {
+        g.iter().flat_map(|g| g.iter().map(|x| -x).chain(vec![9.0; n])).collect()
     }
 
     /// Inverse by elimination without exchanges, of a matrix near the identity.
@@ -296,6 +371,8 @@ mod tests {
         let (n, count) = (5, 40);
         // e^{-60}, e^{20} and a pair of modulus e^{-3}
         let logs = [20.0, 0.0, -60.0];
+        // begun with what belongs to another product
+        let mut latest = Latest::default();
         for _ in 0..20 {
             let w: Vec<Vec<f64>> = (0..count)
                 .map(|_| {
@@ -314,7 +391,7 @@ mod tests {
             let g: Vec<Vec<f64>> = (0..count)
                 .map(|j| times(n, &times(n, &w[(j + 1) % count], &d), &inverse(n, &w[j])))
                 .collect();
-            let found = multipliers(n, count, |j, r, c| g[j][r + c * n]).unwrap();
+            let found = multipliers(n, &joined(n, &g), &mut latest).unwrap();
             let expected = [(20.0, 0.0), (0.0, 0.0), (-3.0, 0.7), (-3.0, -0.7), (-60.0, 0.0)];
             for (found, (log, argument)) in found.iter().zip(expected) {
                 assert!((found.log_modulus - log).abs() < 2e-12, "{found:?} {log}");
@@ -325,8 +402,9 @@ mod tests {
 
     #[test]
     fn a_nilpotent_product_has_multipliers_zero() {
-        let g = [0.0, 0.0, 1.0, 0.0];
-        let found = multipliers(2, 3, |_, r, c| g[r + 2 * c]).unwrap();
+        let g = vec![0.0, 0.0, 1.0, 0.0];
+        let found =
+            multipliers(2, &joined(2, &[g.clone(), g.clone(), g]), &mut Latest::default()).unwrap();
         assert!(found.iter().all(|m| m.modulus() == 0.0));
     }
 }

@@ -1,24 +1,8 @@
 //! The Jacobian of the collocation equations: a cycle of dense blocks with one border.
 
+use super::block::{Factors, Learned, sized};
 use super::cyclic::Cyclic;
-use crate::linalg::{Dense, Facts, Matrix, max_abs};
-use crate::step::dot;
-
-/// One interval: its equations in the unknowns at its left end, `left`, and at its other nodes, `inner`.
-#[derive(Debug, Clone)]
-pub(super) struct Block {
-    pub(super) inner: Dense,
-    /// By columns.
-    pub(super) left: Vec<f64>,
-    /// The column of the border.
-    pub(super) column: Vec<f64>,
-    /// The border's row, at the left end and at the other nodes.
-    pub(super) row_left: Vec<f64>,
-    pub(super) row: Vec<f64>,
-    /// `inner⁻¹ left` and `inner⁻¹ column`, after factoring.
-    solved: Vec<f64>,
-    solved_column: Vec<f64>,
-}
+use crate::linalg::{Facts, Matrix, max_abs};
 
 /// The matrix of a collocation method for periodic solutions: `N` intervals with `m` nodes of `n`
 /// unknowns each, closed to a cycle, with one full row and column (phase condition and period).
@@ -32,11 +16,15 @@ pub struct CycleMatrix {
     n: usize,
     m: usize,
     closing: f64,
-    pub(super) blocks: Vec<Block>,
+    /// Of each interval `k = n m` rows of `[left | inner | column]` and the border's row: the equations in the
+    /// unknowns at its left end, at its other nodes, and in the border.
+    entries: Vec<f64>,
     pub(super) corner: f64,
+    factors: Factors,
     cyclic: Cyclic,
     /// Rows of the condensed border.
     q: Vec<f64>,
+    /// What leads from one mesh point to the next, by columns, and the border's column.
     condensed: Vec<f64>,
     local: Vec<f64>,
     product: Vec<f64>,
@@ -46,177 +34,203 @@ impl CycleMatrix {
     /// A zero matrix; the end of the last interval is `closing` times the start of the first.
     pub(super) fn new(n: usize, m: usize, intervals: usize, closing: f64) -> Self {
         let k = n * m;
-        let block = Block {
-            inner: Dense::new(k),
-            left: vec![0.0; k * n],
-            column: vec![0.0; k],
-            row_left: vec![0.0; n],
-            row: vec![0.0; k],
-            solved: vec![0.0; k * n],
-            solved_column: vec![0.0; k],
-        };
         CycleMatrix {
             n,
             m,
             closing,
-            blocks: vec![block; intervals],
+            entries: vec![0.0; intervals * (k + 1) * (n + k + 1)],
             corner: 0.0,
+            factors: Factors::new(n, k, intervals),
             cyclic: Cyclic::new(n, intervals),
             q: vec![0.0; n * intervals],
             condensed: vec![0.0; n * (n + 1) * intervals],
-            local: vec![0.0; k],
+            local: vec![0.0; n],
             product: vec![0.0; n * intervals],
         }
     }
 
-    /// Condenses the intervals: afterwards [`CycleMatrix::transfer`] is known. The sign of the product of
-    /// their determinants and the number of replaced pivots.
-    pub(super) fn condense(&mut self) -> (Option<i8>, usize, f64) {
-        let (n, k) = (self.n, self.n * self.m);
-        let (mut sign, mut perturbed, mut growth) = (Some(1), 0, 1.0_f64);
-        for block in &mut self.blocks {
-            let floor = f64::EPSILON * block.inner.norm();
-            let facts = block.inner.factor(if floor > 0.0 { floor } else { f64::EPSILON });
-            sign = sign.zip(facts.det_sign).map(|(a, b)| a * b);
-            perturbed += facts.perturbed;
-            growth = growth.max(facts.growth);
-            block.solved.copy_from_slice(&block.left);
-            for c in 0..n {
-                block.inner.solve(&mut block.solved[c * k..(c + 1) * k]);
-            }
-        }
-        (sign, perturbed, growth)
+    /// The rows of an interval, the border's row last, of `n + k + 1` numbers each.
+    pub(super) fn block_mut(&mut self, j: usize) -> &mut [f64] {
+        let k = self.n * self.m;
+        let size = (k + 1) * (self.n + k + 1);
+        &mut self.entries[j * size..(j + 1) * size]
     }
 
-    /// Entry `(r, c)` of the matrix that leads from one mesh point to the next, in interval `j`.
-    pub(super) fn transfer(&self, j: usize, r: usize, c: usize) -> f64 {
-        let k = self.n * self.m;
-        -self.blocks[j].solved[k - self.n + r + c * k]
+    /// Condenses the intervals, the border if it is wanted: afterwards [`CycleMatrix::transfers`] are known. The
+    /// sign of the product of their determinants, the number of replaced pivots, and the growth.
+    pub(super) fn condense(&mut self, bordered: bool) -> (i8, usize, f64) {
+        sized!(self.n, self.n * self.m, condense(self, bordered))
+    }
+
+    /// The matrices `-G` that lead from one mesh point to the next, each by columns and followed by the
+    /// border's column.
+    pub(super) fn transfers(&self) -> &[f64] {
+        &self.condensed
     }
 
     /// Number of intervals.
     pub fn intervals(&self) -> usize {
-        self.blocks.len()
+        self.factors.count()
     }
 
-    /// Where the right end of interval `j` is, and its factor.
-    fn right(&self, j: usize) -> (usize, f64) {
+    /// The unknowns at the right end of interval `j`, and their factor.
+    fn right<'x>(&self, j: usize, x: &'x [f64]) -> (&'x [f64], f64) {
         let k = self.n * self.m;
-        if j + 1 == self.blocks.len() { (0, self.closing) } else { ((j + 1) * k, 1.0) }
+        let last = j + 1 == self.factors.count();
+        let (at, factor) = if last { (0, self.closing) } else { ((j + 1) * k, 1.0) };
+        (&x[at..at + self.n], factor)
     }
+}
+
+#[inline(always)]
+fn condense(n: usize, k: usize, matrix: &mut CycleMatrix, bordered: bool) -> (i8, usize, f64) {
+    let mut all = Learned { sign: 1, perturbed: 0, growth: 1.0 };
+    let blocks = matrix.entries.chunks_exact((k + 1) * (n + k + 1));
+    let out = matrix.condensed.chunks_exact_mut(n * (n + 1));
+    for (j, block) in blocks.enumerate() {
+        let learned = matrix.factors.eliminate(n, k, j, block, bordered);
+        all.sign *= learned.sign;
+        all.perturbed += learned.perturbed;
+        all.growth = all.growth.max(learned.growth);
+    }
+    for (factors, out) in matrix.factors.intervals().zip(out) {
+        factors.condensed(n, k, out);
+    }
+    (all.sign, all.perturbed, all.growth)
+}
+
+#[inline(always)]
+fn multiply(n: usize, k: usize, matrix: &CycleMatrix, x: &[f64], y: &mut [f64]) {
+    let end = matrix.factors.count() * k;
+    let wide = n + k + 1;
+    let mut last = matrix.corner * x[end];
+    let blocks = matrix.entries.chunks_exact((k + 1) * wide);
+    for (j, (block, out)) in blocks.zip(y.chunks_exact_mut(k)).enumerate() {
+        let inside = &x[j * k..(j + 1) * k];
+        let (right, factor) = matrix.right(j, x);
+        let along = |row: &[f64]| -> f64 {
+            let by_right: f64 = (0..n).map(|c| row[k + c] * right[c]).sum();
+            (0..k).map(|c| row[c] * inside[c]).sum::<f64>() + factor * by_right
+        };
+        for (row, out) in block.chunks_exact(wide).zip(out) {
+            *out = along(row) + row[k + n] * x[end];
+        }
+        last += along(&block[k * wide..]);
+    }
+    y[end] = last;
+}
+
+#[inline(always)]
+fn multiply_transposed(n: usize, k: usize, matrix: &CycleMatrix, x: &[f64], y: &mut [f64]) {
+    let end = matrix.factors.count() * k;
+    let wide = n + k + 1;
+    y.fill(0.0);
+    let mut last = matrix.corner * x[end];
+    for (j, block) in matrix.entries.chunks_exact((k + 1) * wide).enumerate() {
+        let is_last = j + 1 == matrix.factors.count();
+        let (at, factor) = if is_last { (0, matrix.closing) } else { ((j + 1) * k, 1.0) };
+        for (r, row) in block.chunks_exact(wide).enumerate() {
+            let value = if r < k { x[j * k + r] } else { x[end] };
+            (0..k).for_each(|c| y[j * k + c] += value * row[c]);
+            (0..n).for_each(|c| y[at + c] += factor * value * row[k + c]);
+            if r < k {
+                last += value * row[k + n];
+            }
+        }
+    }
+    y[end] = last;
+}
+
+#[inline(always)]
+fn solve(n: usize, k: usize, matrix: &mut CycleMatrix, x: &mut [f64]) {
+    let (count, end) = (matrix.factors.count(), matrix.factors.count() * k);
+    let g = &mut matrix.product[..count * n];
+    let mut border = x[end];
+    for ((factors, rows), right) in
+        matrix.factors.intervals().zip(x.chunks_exact_mut(k)).zip(g.chunks_exact_mut(n))
+    {
+        border -= factors.forward(n, k, rows, right);
+    }
+    matrix.cyclic.solve(matrix.closing, g, &mut border);
+    for (j, (factors, rows)) in matrix.factors.intervals().zip(x.chunks_exact_mut(k)).enumerate() {
+        // g holds u_1 … u_{N−1}, u_0
+        let from = if j == 0 { count - 1 } else { j - 1 };
+        let left = &g[from * n..(from + 1) * n];
+        let factor = if j + 1 == count { matrix.closing } else { 1.0 };
+        let right = &mut matrix.local[..n];
+        right.iter_mut().zip(&g[j * n..(j + 1) * n]).for_each(|(r, g)| *r = factor * g);
+        factors.backward(n, k, rows, (left, right, border));
+        rows.copy_within(..k - n, n);
+        rows[..n].copy_from_slice(left);
+    }
+    x[end] = border;
+}
+
+#[inline(always)]
+fn solve_transposed(n: usize, k: usize, matrix: &mut CycleMatrix, x: &mut [f64]) {
+    let (count, end) = (matrix.factors.count(), matrix.factors.count() * k);
+    let c = &mut matrix.product[..count * n];
+    let mut border = x[end];
+    for (j, (factors, rows)) in matrix.factors.intervals().zip(x.chunks_exact_mut(k)).enumerate() {
+        // node j is column j − 1 of the condensed system, the first node its last one
+        let to = if j == 0 { count - 1 } else { j - 1 };
+        let place = &mut c[to * n..(to + 1) * n];
+        place.copy_from_slice(&rows[..n]);
+        rows.copy_within(n.., 0);
+        rows[k - n..].fill(0.0);
+        let by_left = &mut matrix.local[..n];
+        border -= factors.forward_transposed(n, k, rows, by_left);
+        place.iter_mut().zip(by_left).for_each(|(c, by)| *c -= *by);
+    }
+    matrix.cyclic.solve_transpose(matrix.closing, c, &mut border);
+    let blocks = matrix.factors.intervals().zip(x.chunks_exact_mut(k));
+    for ((factors, rows), right) in blocks.zip(c.chunks_exact_mut(n)) {
+        factors.backward_transposed(n, k, rows, right, border);
+    }
+    x[end] = border;
 }
 
 impl Matrix for CycleMatrix {
     fn dim(&self) -> usize {
-        self.blocks.len() * self.n * self.m + 1
+        self.factors.count() * self.n * self.m + 1
     }
 
     fn set_zero(&mut self) {
-        for block in &mut self.blocks {
-            block.inner.set_zero();
-            block.left.fill(0.0);
-            block.column.fill(0.0);
-            block.row_left.fill(0.0);
-            block.row.fill(0.0);
-        }
+        self.entries.fill(0.0);
         self.corner = 0.0;
     }
 
     fn mul(&self, x: &[f64], y: &mut [f64]) {
-        let (n, k, end) = (self.n, self.n * self.m, self.dim() - 1);
-        let mut last = self.corner * x[end];
-        for (j, block) in self.blocks.iter().enumerate() {
-            let out = &mut y[j * k..(j + 1) * k];
-            (0..k).for_each(|r| out[r] = block.column[r] * x[end]);
-            for c in 0..n {
-                let value = x[j * k + c];
-                add(out, value, &block.left[c * k..(c + 1) * k]);
-                last += block.row_left[c] * value;
-            }
-            let (right, factor) = self.right(j);
-            for c in 0..k {
-                let inside = c < k - n;
-                let value = if inside { x[j * k + n + c] } else { factor * x[right + c + n - k] };
-                add(out, value, block.inner.column(c));
-                last += block.row[c] * value;
-            }
-        }
-        y[end] = last;
+        sized!(self.n, self.n * self.m, multiply(self, x, y));
     }
 
     fn mul_transpose(&self, x: &[f64], y: &mut [f64]) {
-        let (n, k, end) = (self.n, self.n * self.m, self.dim() - 1);
-        y.fill(0.0);
-        y[end] = self.corner * x[end];
-        for (j, block) in self.blocks.iter().enumerate() {
-            let rows = &x[j * k..(j + 1) * k];
-            for c in 0..n {
-                y[j * k + c] +=
-                    dot(&block.left[c * k..(c + 1) * k], rows) + block.row_left[c] * x[end];
-            }
-            let (right, factor) = self.right(j);
-            for c in 0..k {
-                let value = dot(block.inner.column(c), rows) + block.row[c] * x[end];
-                if c < k - n {
-                    y[j * k + n + c] += value;
-                } else {
-                    y[right + c + n - k] += factor * value;
-                }
-            }
-            y[end] += dot(&block.column, rows);
-        }
+        sized!(self.n, self.n * self.m, multiply_transposed(self, x, y));
     }
 
     fn axpy(&mut self, a: f64, other: &Self) {
-        let add = |y: &mut [f64], x: &[f64]| y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
-        for (block, other) in self.blocks.iter_mut().zip(&other.blocks) {
-            block.inner.axpy(a, &other.inner);
-            add(&mut block.left, &other.left);
-            add(&mut block.column, &other.column);
-            add(&mut block.row_left, &other.row_left);
-            add(&mut block.row, &other.row);
-        }
+        self.entries.iter_mut().zip(&other.entries).for_each(|(y, x)| *y += a * x);
         self.corner += a * other.corner;
     }
 
     fn norm(&self) -> f64 {
-        self.blocks.iter().fold(self.corner.abs(), |norm, block| {
-            [&block.left, &block.column, &block.row_left, &block.row]
-                .into_iter()
-                .fold(norm.max(block.inner.norm()), |norm, part| norm.max(max_abs(part)))
-        })
+        max_abs(&self.entries).max(self.corner.abs())
     }
 
     /// The floors are those of the condensed blocks, at their own rounding.
     fn factor(&mut self, _floor: f64) -> Facts {
-        let (n, k, count) = (self.n, self.n * self.m, self.blocks.len());
-        let (sign, perturbed, growth) = self.condense();
+        let (n, k, count) = (self.n, self.n * self.m, self.factors.count());
+        let (sign, perturbed, growth) = self.condense(true);
         let mut corner = self.corner;
-        for (j, block) in self.blocks.iter_mut().enumerate() {
-            block.solved_column.copy_from_slice(&block.column);
-            block.inner.solve(&mut block.solved_column);
-            for c in 0..n {
-                let column = &block.solved[c * k..(c + 1) * k];
-                let sum: f64 = block.row.iter().zip(column).map(|(a, b)| a * b).sum();
-                self.q[j * n + c] = block.row_left[c] - sum;
-            }
-            corner -= block.row.iter().zip(&block.solved_column).map(|(a, b)| a * b).sum::<f64>();
+        for (factors, q) in self.factors.intervals().zip(self.q.chunks_exact_mut(n)) {
+            let (row, by) = factors.border(n, k);
+            q.copy_from_slice(row);
+            corner += by;
         }
-        // the condensed blocks, gathered: the last n rows of each
-        let mut gathered = std::mem::take(&mut self.condensed);
-        for (block, out) in self.blocks.iter().zip(gathered.chunks_exact_mut(n * (n + 1))) {
-            for c in 0..n {
-                out[c * n..(c + 1) * n]
-                    .copy_from_slice(&block.solved[(c + 1) * k - n..(c + 1) * k]);
-            }
-            out[n * n..].copy_from_slice(&block.solved_column[k - n..]);
-        }
-        let at = |j: usize| gathered[j * n * (n + 1)..(j + 1) * n * (n + 1)].split_at(n * n);
-        let facts = self.cyclic.factor(self.closing, at, &mut self.q, corner);
-        self.condensed = gathered;
+        let facts = self.cyclic.factor(self.closing, &self.condensed, &mut self.q, corner);
         // the first block of unknowns comes last in the elimination
         let moved = n * (count * k - n) % 2 == 1;
-        let sign = sign.zip(facts.det_sign).map(|(a, b)| if moved { -a * b } else { a * b });
+        let sign = facts.det_sign.map(|s| if moved { -sign * s } else { sign * s });
         Facts {
             det_sign: sign,
             inertia: None,
@@ -226,68 +240,12 @@ impl Matrix for CycleMatrix {
     }
 
     fn solve(&mut self, x: &mut [f64]) {
-        let (n, k, end) = (self.n, self.n * self.m, self.dim() - 1);
-        let mut g = std::mem::take(&mut self.product);
-        let mut border = x[end];
-        for (j, block) in self.blocks.iter_mut().enumerate() {
-            let rows = &mut x[j * k..(j + 1) * k];
-            block.inner.solve(rows);
-            g[j * n..(j + 1) * n].copy_from_slice(&rows[k - n..]);
-            border -= block.row.iter().zip(rows.iter()).map(|(a, b)| a * b).sum::<f64>();
-        }
-        self.cyclic.solve(self.closing, &mut g, &mut border);
-        let count = self.blocks.len();
-        for (j, block) in self.blocks.iter().enumerate() {
-            // g holds u_1 … u_{N−1}, u_0
-            let from = if j == 0 { count - 1 } else { j - 1 };
-            let left = &g[from * n..(from + 1) * n];
-            self.local.copy_from_slice(&x[j * k..(j + 1) * k]);
-            for r in 0..k - n {
-                let mut value = self.local[r] - block.solved_column[r] * border;
-                for c in 0..n {
-                    value -= block.solved[r + c * k] * left[c];
-                }
-                x[j * k + n + r] = value;
-            }
-            x[j * k..j * k + n].copy_from_slice(left);
-        }
-        x[end] = border;
-        self.product = g;
+        sized!(self.n, self.n * self.m, solve(self, x));
     }
 
     fn solve_transpose(&mut self, x: &mut [f64]) {
-        let (n, k, end) = (self.n, self.n * self.m, self.dim() - 1);
-        let count = self.blocks.len();
-        let mut c = std::mem::take(&mut self.product);
-        let mut border = x[end];
-        for (j, block) in self.blocks.iter().enumerate() {
-            let inside = &x[j * k + n..(j + 1) * k];
-            // node j is column j − 1 of the condensed system, the first node its last one
-            let to = if j == 0 { count - 1 } else { j - 1 };
-            for i in 0..n {
-                let column = &block.solved[i * k..(i + 1) * k - n];
-                let sum: f64 = column.iter().zip(inside).map(|(a, b)| a * b).sum();
-                c[to * n + i] = x[j * k + i] - sum;
-            }
-            let column = &block.solved_column[..k - n];
-            border -= column.iter().zip(inside).map(|(a, b)| a * b).sum::<f64>();
-        }
-        self.cyclic.solve_transpose(self.closing, &mut c, &mut border);
-        for (j, block) in self.blocks.iter_mut().enumerate() {
-            self.local[..k - n].copy_from_slice(&x[j * k + n..(j + 1) * k]);
-            self.local[k - n..].copy_from_slice(&c[j * n..(j + 1) * n]);
-            (0..k).for_each(|r| self.local[r] -= block.row[r] * border);
-            block.inner.solve_transpose(&mut self.local);
-            x[j * k..(j + 1) * k].copy_from_slice(&self.local);
-        }
-        x[end] = border;
-        self.product = c;
+        sized!(self.n, self.n * self.m, solve_transposed(self, x));
     }
-}
-
-/// `y += a x`.
-fn add(y: &mut [f64], a: f64, x: &[f64]) {
-    y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
 }
 
 #[cfg(test)]
@@ -303,12 +261,11 @@ mod tests {
 
     fn filled(n: usize, m: usize, intervals: usize, closing: f64, seed: &mut u64) -> CycleMatrix {
         let mut matrix = CycleMatrix::new(n, m, intervals, closing);
-        for block in &mut matrix.blocks {
-            for c in 0..n * m {
-                block.inner.column_mut(c).iter_mut().for_each(|x| *x = random(seed));
-            }
-            let parts = [&mut block.left, &mut block.column, &mut block.row_left, &mut block.row];
-            parts.into_iter().flatten().for_each(|x| *x = random(seed));
+        let wide = n * m + n + 1;
+        for j in 0..intervals {
+            matrix.block_mut(j).iter_mut().for_each(|x| *x = random(seed));
+            // the corner stands elsewhere
+            matrix.block_mut(j)[n * m * wide + wide - 1] = 0.0;
         }
         matrix.corner = random(seed);
         matrix

@@ -2,10 +2,15 @@
 
 use super::basis::Basis;
 
+/// Nodes of an interval, both ends included, at the largest degree.
+const MOST_NODES: usize = 8;
 /// Least part of the mean of the monitor function, so that no interval becomes very long.
 const LEAST: f64 = 0.05;
 /// Range of an unknown, relative to its largest value, below which it is constant.
 const CONSTANT: f64 = 1e-9;
+/// Range of an unknown, relative to the largest range, below which it is rounding of the others: one that an
+/// invariant plane keeps at zero.
+const ROUNDING: f64 = 1e-12;
 
 /// A periodic piecewise polynomial on `[0, 1]`: `n` unknowns at `m` nodes of each interval.
 #[derive(Clone, Copy)]
@@ -33,8 +38,14 @@ impl<'o> Orbit<'o> {
         let t = t - t.floor();
         let j = self.mesh.partition_point(|x| *x <= t).clamp(1, self.intervals()) - 1;
         let local = (t - self.mesh[j]) / (self.mesh[j + 1] - self.mesh[j]);
-        let mut weights = vec![0.0; self.basis.degree + 1];
-        self.basis.evaluate(local, &mut weights);
+        let mut weights = [0.0; MOST_NODES];
+        let weights = &mut weights[..=self.basis.degree];
+        self.basis.evaluate(local, weights);
+        self.within(j, weights, out);
+    }
+
+    /// The value in interval `j` where the polynomials of the nodes have these values.
+    pub(super) fn within(&self, j: usize, weights: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for (k, weight) in weights.iter().enumerate() {
             out.iter_mut().zip(self.node(j, k)).for_each(|(o, u)| *o += weight * u);
@@ -53,6 +64,21 @@ impl<'o> Orbit<'o> {
         out
     }
 
+    /// The values at the nodes of the mesh whose intervals are half as long.
+    pub(super) fn on_halved(&self, out: &mut [f64]) {
+        let (m, n) = (self.basis.degree, self.n);
+        let mut weights = vec![0.0; 2 * m * (m + 1)];
+        for (index, weights) in weights.chunks_exact_mut(m + 1).enumerate() {
+            self.basis.evaluate(index as f64 / (2 * m) as f64, weights);
+        }
+        let mut places = out.chunks_exact_mut(n);
+        for j in 0..self.intervals() {
+            for (weights, place) in weights.chunks_exact(m + 1).zip(&mut places) {
+                self.within(j, weights, place);
+            }
+        }
+    }
+
     /// A mesh of so many intervals on which the interpolation error is about the same everywhere (de
     /// Boor 1973, as in AUTO): equal integrals of the root of the derivative of order `m + 1`, which is
     /// estimated by differences of the one of order `m`, constant on each interval.
@@ -68,7 +94,9 @@ impl<'o> Orbit<'o> {
                 }
             }
         }
-        let ranges: Vec<f64> = (0..n).map(|i| self.range(i)).collect();
+        let mut ranges: Vec<f64> = (0..n).map(|i| self.range(i)).collect();
+        let least = ROUNDING * ranges.iter().fold(0.0_f64, |m, x| m.max(*x));
+        ranges.iter_mut().filter(|x| **x < least).for_each(|x| *x = 0.0);
         let jump = |j: usize| -> f64 {
             // at the left end of interval j
             let before = (j + count - 1) % count;

@@ -77,6 +77,8 @@
 //! [`DoublingForm`](crate::DoublingForm) has `p″` with its error, and calls the point super- or subcritical where
 //! the sign is beyond it and the counts on both sides are certain.
 //!
+//! [`curve()`] follows limit points and period doublings in two parameters.
+//!
 //! [`explore()`] follows all cycles that leave the Hopf points of a list of branches, each once, and says what is open.
 //!
 //! A branch ends with [`PeriodUnbounded`](crate::StopReason::PeriodUnbounded) where the period grows while the
@@ -91,8 +93,8 @@
 //! which their errors show. Within a canard explosion the parameter is the same to rounding, and its turns are not
 //! found. Near the unit multiplier of a fold, and at a branch point, two multipliers are
 //! close to 1 and neither is known better than the square root of rounding; counts are uncertain there. Whether
-//! a torus is super- or subcritical is not said; curves of special points in two
-//! parameters are not followed. An approach to a homoclinic orbit is told by the period alone.
+//! a torus is super- or subcritical is not said, and curves of tori are not followed; on curves of other special cycles
+//! cusps alone are told, resonances are not. An approach to a homoclinic orbit is told by the period alone.
 //!
 //! # References
 //! - U. M. Ascher, R. M. M. Mattheij and R. D. Russell, *Numerical Solution of Boundary Value Problems for
@@ -108,21 +110,28 @@
 
 mod basis;
 mod birth;
+mod block;
 mod collocation;
+mod curve;
 mod cycle;
 mod cyclic;
 mod doubling;
 mod ends;
 mod explore;
+mod finer;
 mod floquet;
+mod functions;
+mod interval;
 mod matrix;
 mod mesh;
+mod observed;
 mod point;
 mod settings;
 mod trace;
 
 pub use birth::SmallCycle;
 pub use collocation::{CycleProblem, MAX_BLOCK};
+pub use curve::{CycleCurve, CycleCurvePoint, SpecialCycles, curve};
 pub use cycle::{Cycle, CycleError};
 pub use explore::{CycleOrigin, Explored, Follow, FollowedCycles, explore};
 pub use floquet::Multiplier;

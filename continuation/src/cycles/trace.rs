@@ -3,8 +3,10 @@
 use super::collocation::{CycleProblem, DOUBLING, PERIOD, TORUS};
 use super::cycle::{Cycle, CycleError};
 use super::doubling::add_forms;
+use super::finer::{Finer, Halved, finer};
 use super::mesh::Orbit;
-use super::point::{CyclePoint, Finer, columns, finer, observe};
+use super::observed::{columns, observe};
+use super::point::CyclePoint;
 use super::settings::CycleSettings;
 use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Doubt, Event, EventKind, Point, Statistics, Stop, StopReason};
@@ -87,6 +89,7 @@ pub(crate) fn trace_of(
         watches,
         points: Vec::new(),
         cycles: Vec::new(),
+        halved: None,
         moved: Vec::new(),
         events: Vec::new(),
         event_errors: Vec::new(),
@@ -101,26 +104,40 @@ pub(crate) fn trace_of(
     let mut equations = CycleProblem::of(problem, start)?;
     let (x, p) = (equations.unknowns(start), start.parameters.clone());
     let mut baton: Option<Baton> = None;
+    // the mesh before, to which the trace returns where the step over would be a jump
+    let mut before: Option<(CycleProblem<'_>, Baton)> = None;
     let stopped = loop {
-        let tracer = match &baton {
-            None => {
-                let tracer = Tracer::new(&equations, parameter, &x, &p, run.settings.clone())?;
-                run.range = tracer.expected_range();
-                tracer
-            }
-            Some(baton) => {
-                let settings = run.settings.clone();
-                Tracer::resume(&equations, which, &p, baton, settings, OVER)
-                    .map_err(TraceError::Tangent)?
+        let settings = run.settings.clone();
+        let went = {
+            let resumed = match baton.as_ref() {
+                None => {
+                    let tracer = Tracer::new(&equations, parameter, &x, &p, settings)?;
+                    run.range = tracer.expected_range();
+                    Ok(tracer)
+                }
+                Some(from) => Tracer::resume(&equations, which, &p, from, settings, OVER),
+            };
+            match resumed {
+                Ok(tracer) => {
+                    let tracer = tracer.watching(&run.watches)?;
+                    match run.segment(&equations, tracer, &p, baton.is_some(), observer) {
+                        Outcome::End(stop) => break stop,
+                        Outcome::Restart(next) => Ok(*next),
+                    }
+                }
+                Err(refusal) => Err(refusal),
             }
         };
-        let tracer = tracer.watching(&run.watches)?;
-        match run.segment(&equations, tracer, &p, baton.is_some(), observer) {
-            Outcome::End(stop) => break stop,
-            Outcome::Restart(next) => {
-                let (next_equations, next_baton) = *next;
-                equations = next_equations;
-                baton = Some(next_baton);
+        match went {
+            Ok(Restart { next, left }) => {
+                before = Some((std::mem::replace(&mut equations, next.0), left));
+                baton = Some(next.1);
+            }
+            Err(refusal) => {
+                let Some((old, left)) = before.take() else {
+                    return Err(TraceError::Tangent(refusal).into());
+                };
+                (equations, baton) = (old, Some(left));
             }
         }
     };
@@ -129,7 +146,13 @@ pub(crate) fn trace_of(
 
 enum Outcome<'a> {
     End(Stop),
-    Restart(Box<(CycleProblem<'a>, Baton)>),
+    Restart(Box<Restart<'a>>),
+}
+
+/// The way over to another mesh, and where it leaves the one before.
+struct Restart<'a> {
+    next: (CycleProblem<'a>, Baton),
+    left: Baton,
 }
 
 pub(super) struct Run<'a, 's> {
@@ -140,6 +163,8 @@ pub(super) struct Run<'a, 's> {
     watches: Vec<Watch>,
     pub(super) points: Vec<Point>,
     pub(super) cycles: Vec<CyclePoint>,
+    /// For solving the points again.
+    halved: Option<Halved<'a>>,
     /// What halving the intervals moves at each point, in the metric.
     moved: Vec<Option<f64>>,
     events: Vec<Event>,
@@ -205,7 +230,7 @@ impl<'a> Run<'a, '_> {
             if due && last.event.is_none() && tracer.stopped().is_none() {
                 let baton = tracer.baton(self.range);
                 if baton.at.u == last.u {
-                    restart = self.adapt(equations, baton, start);
+                    restart = self.adapt(equations, baton);
                     if restart.is_some() {
                         break;
                     }
@@ -227,14 +252,9 @@ impl<'a> Run<'a, '_> {
         }
     }
 
-    /// Equations on a mesh that fits the latest cycle, and where to go on; `None` where the step over
-    /// would be a jump.
-    fn adapt(
-        &self,
-        equations: &CycleProblem<'a>,
-        mut baton: Baton,
-        start: &[f64],
-    ) -> Option<Box<(CycleProblem<'a>, Baton)>> {
+    /// Equations on a mesh that fits the latest cycle, and where to go on; `None` where there are none.
+    fn adapt(&self, equations: &CycleProblem<'a>, mut baton: Baton) -> Option<Box<Restart<'a>>> {
+        let left = baton.clone();
         let last = self.cycles.last()?;
         let settings = self.cycle_settings;
         let mut intervals = equations.intervals() as f64;
@@ -242,8 +262,8 @@ impl<'a> Run<'a, '_> {
             Some(error) => {
                 let power = 0.5 / last.cycle.degree as f64;
                 let ratio = (error / settings.accuracy).powf(power);
-                // towards what the accuracy asks for, slowly downwards
-                if ratio > 1.0 { (1.2 * ratio).min(2.0) } else { ratio.max(0.85) }
+                // towards what the accuracy asks for, more slowly downwards
+                if ratio > 1.0 { (1.2 * ratio).min(2.0) } else { (1.1 * ratio).clamp(0.7, 1.0) }
             }
             // an orbit that the mesh does not resolve
             None if settings.check => 2.0,
@@ -268,8 +288,7 @@ impl<'a> Run<'a, '_> {
         baton.at = at;
         // a branch that begins at an equilibrium is long beside its first cycle
         baton.measure_by(next.unit * cycle.period);
-        Tracer::resume(&next, self.which, start, &baton, self.settings.clone(), OVER).ok()?;
-        Some(Box::new((next, baton)))
+        Some(Box::new(Restart { next: (next, baton), left }))
     }
 
     /// Adds a point with all that is known of it, and its event.
@@ -284,8 +303,12 @@ impl<'a> Run<'a, '_> {
         p[self.which.0] = point.p;
         let kind = event.as_ref().and_then(|event| kind(&event.kind));
         let across = kind.is_some();
-        let check = || finer(equations, self.which, &point.u, &p, self.range, across);
-        let fine = if self.cycle_settings.check { check() } else { None };
+        let at = (&point.u[..], &p[..], point.dp_ds);
+        let fine = if self.cycle_settings.check {
+            finer(&mut self.halved, equations, self.which, at, self.range, across)
+        } else {
+            None
+        };
         let cycle = CyclePoint::of(equations, &point.u, &p, fine.as_ref(), self.which);
         let fine = fine.filter(|_| cycle.error.is_some());
         (point.unstable, point.certified) = (cycle.unstable, cycle.certified);

@@ -115,6 +115,12 @@ impl AnyMatrix {
         any.downcast_ref().unwrap_or_else(|| foreign())
     }
 
+    /// The matrix itself if it is of this type.
+    pub(crate) fn downcast<J: Matrix>(&self) -> Option<&J> {
+        let any: &dyn Any = &*self.0;
+        any.downcast_ref()
+    }
+
     pub(crate) fn get_mut<J: Matrix>(&mut self) -> &mut J {
         let any: &mut dyn Any = &mut *self.0;
         any.downcast_mut().unwrap_or_else(|| foreign())

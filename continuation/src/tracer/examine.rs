@@ -10,9 +10,14 @@ pub(super) const LABORIOUS: usize = 5;
 pub(super) const MANY: usize = 6;
 
 impl Tracer<'_> {
+    /// Whether the derivatives were looked at, or will not be.
+    pub(super) fn is_examined(&self) -> bool {
+        self.examined || self.core.statistics.accepted >= EARLY
+    }
+
     /// Looks once at the derivatives early on, and once more where corrections are laborious.
     pub(super) fn examine_derivatives(&mut self) {
-        let early = self.core.statistics.accepted == EARLY;
+        let early = self.core.statistics.accepted == EARLY && !self.examined;
         let late = self.laborious == MANY;
         if !(early || late) || self.core.problem.special_points().is_some() {
             return;

@@ -103,6 +103,8 @@ pub struct Tracer<'a> {
     expected: Option<Weights>,
     // corrections that took many assemblies
     laborious: usize,
+    // whether the derivatives were looked at on another mesh
+    examined: bool,
     // the largest separation on a curve of special points so far
     separation: f64,
     s: f64,
@@ -223,6 +225,7 @@ impl<'a> Tracer<'a> {
             anchor_s: 0.0,
             expected: None,
             laborious: 0,
+            examined: false,
             separation: 0.0,
             s: 0.0,
             running_unstable: start.unstable,

@@ -15,6 +15,8 @@ pub(crate) struct Baton {
     size: StepSize,
     /// Range of the parameter.
     range: f64,
+    /// Whether the derivatives were looked at.
+    examined: bool,
 }
 
 impl Baton {
@@ -27,7 +29,13 @@ impl Baton {
 impl<'a> Tracer<'a> {
     /// Where the trace stands, and by which lengths it measures.
     pub(crate) fn baton(&self, range: f64) -> Baton {
-        Baton { at: self.current.clone(), weights: self.core.weights, size: self.size, range }
+        Baton {
+            at: self.current.clone(),
+            weights: self.core.weights,
+            size: self.size,
+            range,
+            examined: self.is_examined(),
+        }
     }
 
     /// A trace from `baton`, whose state is near a solution of `problem`: corrected on the plane across
@@ -58,6 +66,7 @@ impl<'a> Tracer<'a> {
         let mut tracer =
             Self::set_up(core, start, p, settings, baton.range).map_err(|_| Refusal::Singular)?;
         tracer.size = baton.size;
+        tracer.examined = baton.examined;
         // the same step, in the lengths by which it is measured now
         tracer.size.h *= norm;
         Ok(tracer)

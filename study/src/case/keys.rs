@@ -262,7 +262,7 @@ pub(crate) const CYCLES: Key = key(
     Kind::Flag,
     "",
     Absent::Flag(false),
-    "Whether the periodic orbits that leave Hopf points are followed",
+    "Whether the periodic orbits that leave Hopf points are followed, by maps too",
 );
 /// `diagram.cycle_depth`.
 pub(crate) const CYCLE_DEPTH: Key = count(

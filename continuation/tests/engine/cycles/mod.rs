@@ -1,6 +1,7 @@
 //! Periodic orbits against exact ones, against an independent integrator, and against textbooks.
 #![allow(clippy::unwrap_used)]
 
+mod curves;
 mod embedded;
 mod exact;
 mod explore;

@@ -170,3 +170,39 @@ fn roessler_doubles_its_period_where_shooting_says() {
     let at = doubled.branch.points.iter().position(|point| point.p > 3.3).unwrap();
     agrees(&problem, &doubled, at, 200);
 }
+
+/// Within the explosion multipliers are known badly: differences of their functions to one side alone had steps refused
+/// until the branch came to a standstill.
+#[test]
+fn no_standstill_in_a_canard_explosion() {
+    let system = System {
+        n: 2,
+        parameters: vec![continuation::Parameter { name: "I", unit: "", scale: 1.0 }],
+        field: |u, p, r| {
+            r[0] = u[0] - u[0].powi(3) / 3.0 - u[1] + p[0];
+            r[1] = 0.08 * (u[0] + 0.7 - 0.8 * u[1]);
+        },
+        slopes: |u, _, set| {
+            set(0, 0, 1.0 - u[0] * u[0]);
+            set(0, 1, -1.0);
+            set(0, 2, 1.0);
+            set(1, 0, 0.08);
+            set(1, 1, -0.064);
+        },
+    };
+    let settings = Settings { target: Some(0.5), ..Settings::default() };
+    let equilibria =
+        Tracer::new(&system, "I", &[-1.2, -0.62], &[0.0], settings).unwrap().run_quietly();
+    let hopf = equilibria.events_of(&EventKind::Hopf).next().unwrap();
+    let cycles = CycleSettings::default();
+    let small = SmallCycle::at_hopf(&system, &equilibria, hopf, &cycles).unwrap();
+    let settings = Settings {
+        domain: Some((0.0, 1.0)),
+        increasing: Some(small.increasing),
+        max_points: 300,
+        ..Settings::default()
+    };
+    let branch = super::follow(&system, "I", &small.cycle, settings);
+    assert_eq!(branch.branch.stopped.reason, StopReason::Domain);
+    assert!(branch.cycles.last().unwrap().period_error.unwrap() < 1e-9);
+}

@@ -1,11 +1,11 @@
 //! Maps of problems of the catalogue.
 
-use super::curves::{Found, curves};
-use super::{Attempt, MapError, Task};
+use super::curves::{Found, curves, may_go_on};
+use super::{Attempt, MapError, Task, cycles};
 use crate::case::CatalogueCase;
 use crate::closest::closest;
 use crate::run::{Observer, RunError, listen, settings};
-use continuation::{Branch, Problem, TraceError, Tracer};
+use continuation::{Branch, Problem, StopReason, TraceError, Tracer};
 use problems::{Entry, Request, Setup, Visitor};
 
 /// The value of a parameter in the case, and its plain name.
@@ -55,6 +55,8 @@ impl From<TraceError> for Refused {
 
 struct Map<'t, 'o, 'm> {
     task: &'t Task<'t>,
+    /// Value of the second parameter.
+    at: f64,
     observer: &'o mut Observer<'m>,
 }
 
@@ -69,7 +71,14 @@ impl Visitor for Map<'_, '_, '_> {
         }
         let tracer = Tracer::new(problem, setup.parameter, &setup.u, &setup.p, setup.settings)?;
         let base = tracer.watching(&setup.watches)?.run(&mut listen(self.observer));
-        let (found, refused) = curves(problem, &base, self.task, self.observer);
+        let (mut found, mut refused) = curves(problem, &base, self.task, self.observer);
+        let stopped = base.stopped.reason == StopReason::Interrupted
+            || found.last().is_some_and(|found| !may_go_on(found));
+        if self.task.case.diagram.cycles && !stopped {
+            let more = cycles::curves(problem, &base, (self.task, self.at), self.observer);
+            found.extend(more.0);
+            refused.extend(more.1);
+        }
         Ok((base, found, refused))
     }
 }
@@ -100,7 +109,7 @@ pub(in crate::run) fn attempt(
             remedy: "choose another start or other parameters",
         }),
     };
-    let outcome = entry.visit(&request(task, problem, entry, at), Map { task, observer });
+    let outcome = entry.visit(&request(task, problem, entry, at), Map { task, at, observer });
     let outcome = outcome.map_err(|error| RunError::Problem { case: case.clone(), error })?;
     let (base, found, refused) = outcome.map_err(wrong)?;
     Ok(Attempt {

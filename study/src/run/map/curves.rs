@@ -74,7 +74,7 @@ pub(super) fn curves<P: Problem>(
     (found, refused)
 }
 
-fn may_go_on(found: &Found) -> bool {
+pub(super) fn may_go_on(found: &Found) -> bool {
     ![&found.began, &found.stopped].iter().any(|end| end.reason == StopReason::Interrupted)
 }
 
@@ -120,7 +120,7 @@ fn trace<P: Problem>(
 
 /// Bounds of the first parameter, the same for all curves: those of the path; where a special
 /// point lies beyond them, where the branch went, with as much room again on either side.
-fn bounds(base: &Branch, path: &PathCase) -> [f64; 2] {
+pub(super) fn bounds(base: &Branch, path: &PathCase) -> [f64; 2] {
     let (low, high) = (path.start.min(path.end), path.start.max(path.end));
     let special = |event: &&Event| {
         matches!(event.kind, EventKind::Fold | EventKind::Hopf | EventKind::BranchPoint)
@@ -136,14 +136,14 @@ fn bounds(base: &Branch, path: &PathCase) -> [f64; 2] {
 
 /// Longest step by default: short enough for curves that look smooth, and not so short that the
 /// range of the second parameter takes more than a hundred of them.
-fn smooth(base: &Branch, task: &Task<'_>) -> Option<f64> {
+pub(super) fn smooth(base: &Branch, task: &Task<'_>) -> Option<f64> {
     let length = base.points.last().map_or(0.0, |point| point.s);
     let step = (length / 60.0).max((task.range.1 - task.range.0) / 100.0);
     (step.is_finite() && step > 0.0).then_some(step)
 }
 
 /// Why a curve ends, said for the bound of the path too.
-fn end(stop: &Stop, first: Option<&f64>, parameter: &str, bounds: [f64; 2]) -> Stop {
+pub(super) fn end(stop: &Stop, first: Option<&f64>, parameter: &str, bounds: [f64; 2]) -> Stop {
     let near = |at: &f64| bounds.iter().any(|x| (x - at).abs() <= 1e-9 * (1.0 + x.abs()));
     if stop.reason == StopReason::Target && first.is_some_and(near) {
         let detail = format!("{parameter} reached its bound");

@@ -7,6 +7,7 @@
 pub(super) mod catalogue;
 pub(super) mod contact;
 mod curves;
+mod cycles;
 mod range;
 pub(super) mod ring_load;
 
