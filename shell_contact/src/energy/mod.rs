@@ -7,8 +7,8 @@
 //! couples everything through `V̂`: Hessian = band + `(γP_G/V̂) v vᵀ`, the band containing
 //! `−(P_G − P_A) ∂²V̂`. Nothing here allocates.
 //!
-//! There is one loop over the Gauss points ([`visit`]), which checks each place; what is computed there
-//! is a [`Visitor`].
+//! There is one loop over the Gauss points (`visit`), which checks each place; what is computed there
+//! is a `Visitor`.
 
 mod clear;
 pub(crate) mod gradients;
