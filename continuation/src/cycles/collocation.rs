@@ -7,11 +7,13 @@ use super::matrix::CycleMatrix;
 use super::mesh::Orbit;
 use crate::any_problem::DynProblem;
 use crate::linalg::{AnyMatrix, Dense, Matrix};
+use crate::name::Name;
+use crate::names;
+use crate::pool::Pool;
 use crate::problem::{
     EvalError, ParamId, Parameter, Problem, Stability, check_finite, check_pattern,
 };
 use crate::step::dot;
-use std::cell::RefCell;
 
 /// Largest number of unknowns of an interval, `n m`: its block is dense.
 pub const MAX_BLOCK: usize = 800;
@@ -44,7 +46,7 @@ pub struct CycleProblem<'a> {
     /// The phase condition: at each Gauss point the derivative of the reference orbit, weighted.
     phase: Vec<f64>,
     mass: Option<Dense>,
-    work: RefCell<Work>,
+    work: Pool<Work>,
 }
 
 struct Work {
@@ -58,6 +60,22 @@ struct Work {
     known: Vec<Multiplier>,
     /// For the multipliers alone.
     matrix: Option<CycleMatrix>,
+}
+
+impl Work {
+    fn new(problem: &DynProblem<'_>) -> Self {
+        let vector = || vec![0.0; problem.dim()];
+        Work {
+            u: vector(),
+            du: vector(),
+            f: vector(),
+            jacobian: problem.new_jacobian(),
+            unit: vector(),
+            at: Vec::new(),
+            known: Vec::new(),
+            matrix: None,
+        }
+    }
 }
 
 /// A dense copy of a constant mass matrix, if it has full rank.
@@ -130,16 +148,6 @@ impl<'a> CycleProblem<'a> {
         phase.iter_mut().for_each(|x| *x /= norm);
         // |u'| over 2π: the amplitude of the orbit if it is a circle
         let unit = norm / (2.0 * std::f64::consts::PI) / cycle.period;
-        let work = Work {
-            u: vec![0.0; n],
-            du: vec![0.0; n],
-            f: vec![0.0; n],
-            jacobian: problem.new_jacobian(),
-            unit: vec![0.0; n],
-            at: Vec::new(),
-            known: Vec::new(),
-            matrix: None,
-        };
         Ok(CycleProblem {
             problem,
             n,
@@ -147,9 +155,13 @@ impl<'a> CycleProblem<'a> {
             unit,
             phase,
             mass: mass(problem)?,
-            work: RefCell::new(work),
+            work: Pool::new(Work::new(problem)),
             basis,
         })
+    }
+
+    fn with<R>(&self, evaluate: impl FnOnce(&mut Work) -> R) -> R {
+        self.work.with(|| Work::new(self.problem), evaluate)
     }
 
     /// Number of intervals.
@@ -194,9 +206,10 @@ impl<'a> CycleProblem<'a> {
     /// # Errors
     /// Where the problem has no value, or an interval is too long for its solution.
     pub fn multipliers(&self, x: &[f64], p: &[f64]) -> Result<Vec<Multiplier>, EvalError> {
-        let work = &mut *self.work.borrow_mut();
-        self.find_multipliers(work, x, p)?;
-        Ok(work.known.clone())
+        self.with(|work| {
+            self.find_multipliers(work, x, p)?;
+            Ok(work.known.clone())
+        })
     }
 
     fn find_multipliers(&self, work: &mut Work, x: &[f64], p: &[f64]) -> Result<(), EvalError> {
@@ -225,7 +238,7 @@ impl<'a> CycleProblem<'a> {
     pub(super) fn flip(&self, x: &[f64], p: &[f64]) -> Result<Option<Vec<f64>>, EvalError> {
         let size = self.dim();
         let mut matrix = CycleMatrix::new(self.n, self.basis.degree, self.intervals(), -1.0);
-        self.assemble(&mut self.work.borrow_mut(), x, p, &mut matrix)?;
+        self.with(|work| self.assemble(work, x, p, &mut matrix))?;
         for block in &mut matrix.blocks {
             block.column.fill(0.0);
             block.row.fill(0.0);
@@ -249,19 +262,21 @@ impl<'a> CycleProblem<'a> {
     /// Cosine between the derivatives of the orbit and of the reference.
     pub(super) fn alignment(&self, x: &[f64]) -> f64 {
         let (n, m) = (self.n, self.basis.degree);
-        let Work { u, du, f, .. } = &mut *self.work.borrow_mut();
-        let (mut along, mut square) = (0.0, 0.0);
-        for j in 0..self.intervals() {
-            let h = self.mesh[j + 1] - self.mesh[j];
-            for i in 0..m {
-                self.interpolate(x, (j, i), u, du);
-                let at = (j * m + i) * n;
-                along += dot(&self.phase[at..at + n], du) / h;
-                self.problem.metric(du, f);
-                square += self.basis.weights[i] * dot(du, f) / h;
+        self.with(|work| {
+            let Work { u, du, f, .. } = work;
+            let (mut along, mut square) = (0.0, 0.0);
+            for j in 0..self.intervals() {
+                let h = self.mesh[j + 1] - self.mesh[j];
+                for i in 0..m {
+                    self.interpolate(x, (j, i), u, du);
+                    let at = (j * m + i) * n;
+                    along += dot(&self.phase[at..at + n], du) / h;
+                    self.problem.metric(du, f);
+                    square += self.basis.weights[i] * dot(du, f) / h;
+                }
             }
-        }
-        along / square.sqrt()
+            along / square.sqrt()
+        })
     }
 
     /// State and derivative, times the interval's length, at Gauss point `i` of interval `j`.
@@ -409,37 +424,39 @@ impl Problem for CycleProblem<'_> {
     /// `M u′ − h T f` at the Gauss points, and the phase condition.
     fn residual(&self, x: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
         let (n, m, end) = (self.n, self.basis.degree, self.dim() - 1);
-        let Work { u, du, f, .. } = &mut *self.work.borrow_mut();
-        let period = x[end] / self.unit;
-        if period.is_nan() || period <= 0.0 {
-            return Err(EvalError::Inadmissible {
-                what: "the period is not positive",
-                at: end,
-                value: period,
-            });
-        }
-        r[end] = 0.0;
-        for j in 0..self.intervals() {
-            let h = self.mesh[j + 1] - self.mesh[j];
-            for i in 0..m {
-                self.interpolate(x, (j, i), u, du);
-                self.problem.residual(u, p, f)?;
-                check_finite(f)?;
-                let at = (j * m + i) * n;
-                let place = &mut r[at..at + n];
-                match &self.mass {
-                    None => place.copy_from_slice(du),
-                    Some(mass) => mass.mul(du, place),
-                }
-                place.iter_mut().zip(f.iter()).for_each(|(r, f)| *r -= h * period * f);
-                r[end] += dot(&self.phase[at..at + n], u);
+        self.with(|work| {
+            let Work { u, du, f, .. } = work;
+            let period = x[end] / self.unit;
+            if period.is_nan() || period <= 0.0 {
+                return Err(EvalError::Inadmissible {
+                    what: "the period is not positive",
+                    at: end,
+                    value: period,
+                });
             }
-        }
-        Ok(())
+            r[end] = 0.0;
+            for j in 0..self.intervals() {
+                let h = self.mesh[j + 1] - self.mesh[j];
+                for i in 0..m {
+                    self.interpolate(x, (j, i), u, du);
+                    self.problem.residual(u, p, f)?;
+                    check_finite(f)?;
+                    let at = (j * m + i) * n;
+                    let place = &mut r[at..at + n];
+                    match &self.mass {
+                        None => place.copy_from_slice(du),
+                        Some(mass) => mass.mul(du, place),
+                    }
+                    place.iter_mut().zip(f.iter()).for_each(|(r, f)| *r -= h * period * f);
+                    r[end] += dot(&self.phase[at..at + n], u);
+                }
+            }
+            Ok(())
+        })
     }
 
     fn jacobian(&self, x: &[f64], p: &[f64], j: &mut CycleMatrix) -> Result<(), EvalError> {
-        self.assemble(&mut self.work.borrow_mut(), x, p, j)
+        self.with(|work| self.assemble(work, x, p, j))
     }
 
     fn parameter_derivative(
@@ -450,19 +467,21 @@ impl Problem for CycleProblem<'_> {
         out: &mut [f64],
     ) -> Result<(), EvalError> {
         let (n, m, end) = (self.n, self.basis.degree, self.dim() - 1);
-        let Work { u, du, f, .. } = &mut *self.work.borrow_mut();
-        let period = x[end] / self.unit;
-        out[end] = 0.0;
-        for j in 0..self.intervals() {
-            let h = self.mesh[j + 1] - self.mesh[j];
-            for i in 0..m {
-                self.interpolate(x, (j, i), u, du);
-                self.problem.parameter_derivative(u, p, which, f)?;
-                let place = &mut out[(j * m + i) * n..(j * m + i + 1) * n];
-                place.iter_mut().zip(f.iter()).for_each(|(o, f)| *o = -h * period * f);
+        self.with(|work| {
+            let Work { u, du, f, .. } = work;
+            let period = x[end] / self.unit;
+            out[end] = 0.0;
+            for j in 0..self.intervals() {
+                let h = self.mesh[j + 1] - self.mesh[j];
+                for i in 0..m {
+                    self.interpolate(x, (j, i), u, du);
+                    self.problem.parameter_derivative(u, p, which, f)?;
+                    let place = &mut out[(j * m + i) * n..(j * m + i + 1) * n];
+                    place.iter_mut().zip(f.iter()).for_each(|(o, f)| *o = -h * period * f);
+                }
             }
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     fn derivative_error(
@@ -475,50 +494,55 @@ impl Problem for CycleProblem<'_> {
         out: &mut [f64],
     ) -> Result<(), EvalError> {
         let (n, m, end) = (self.n, self.basis.degree, self.dim() - 1);
-        let Work { u, du, f, unit, .. } = &mut *self.work.borrow_mut();
-        let period = x[end] / self.unit;
-        out[end] = 0.0;
-        for j in 0..self.intervals() {
-            let h = self.mesh[j + 1] - self.mesh[j];
-            for i in 0..m {
-                self.interpolate(x, (j, i), u, du);
-                self.interpolate(dx, (j, i), unit, du);
-                self.problem.derivative_error(u, p, which, unit, dp, f)?;
-                let place = &mut out[(j * m + i) * n..(j * m + i + 1) * n];
-                place.iter_mut().zip(f.iter()).for_each(|(o, f)| *o = h * period * f);
+        self.with(|work| {
+            let Work { u, du, f, unit, .. } = work;
+            let period = x[end] / self.unit;
+            out[end] = 0.0;
+            for j in 0..self.intervals() {
+                let h = self.mesh[j + 1] - self.mesh[j];
+                for i in 0..m {
+                    self.interpolate(x, (j, i), u, du);
+                    self.interpolate(dx, (j, i), unit, du);
+                    self.problem.derivative_error(u, p, which, unit, dp, f)?;
+                    let place = &mut out[(j * m + i) * n..(j * m + i + 1) * n];
+                    place.iter_mut().zip(f.iter()).for_each(|(o, f)| *o = h * period * f);
+                }
             }
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     fn metric(&self, x: &[f64], y: &mut [f64]) {
         let (n, m, end) = (self.n, self.basis.degree, self.dim() - 1);
-        let Work { u, du, f, .. } = &mut *self.work.borrow_mut();
-        y[..end].fill(0.0);
-        y[end] = x[end];
-        let nodes = self.intervals() * m;
-        for j in 0..self.intervals() {
-            let h = self.mesh[j + 1] - self.mesh[j];
-            for i in 0..m {
-                self.interpolate(x, (j, i), u, du);
-                self.problem.metric(u, f);
-                for (k, value) in self.basis.values[i].iter().enumerate() {
-                    let at = (j * m + k) % nodes * n;
-                    let weight = h * self.basis.weights[i] * value;
-                    y[at..at + n].iter_mut().zip(f.iter()).for_each(|(y, f)| *y += weight * f);
+        self.with(|work| {
+            let Work { u, du, f, .. } = work;
+            y[..end].fill(0.0);
+            y[end] = x[end];
+            let nodes = self.intervals() * m;
+            for j in 0..self.intervals() {
+                let h = self.mesh[j + 1] - self.mesh[j];
+                for i in 0..m {
+                    self.interpolate(x, (j, i), u, du);
+                    self.problem.metric(u, f);
+                    for (k, value) in self.basis.values[i].iter().enumerate() {
+                        let at = (j * m + k) % nodes * n;
+                        let weight = h * self.basis.weights[i] * value;
+                        y[at..at + n].iter_mut().zip(f.iter()).for_each(|(y, f)| *y += weight * f);
+                    }
                 }
             }
-        }
+        })
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &[PERIOD, DOUBLING, TORUS]
+    fn observables(&self) -> &[Name] {
+        names![PERIOD, DOUBLING, TORUS]
     }
 
     fn observe(&self, x: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
-        let work = &mut *self.work.borrow_mut();
-        self.find_multipliers(work, x, p)?;
-        let [doubling, torus] = Self::tests(&work.known);
+        let [doubling, torus] = self.with(|work| {
+            self.find_multipliers(work, x, p)?;
+            Ok::<_, EvalError>(Self::tests(&work.known))
+        })?;
         out.copy_from_slice(&[x[self.dim() - 1] / self.unit, doubling, torus]);
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use super::Watch;
 use super::hermite::Cubic;
+use crate::name::Name;
 use crate::step::{Refusal, State};
 
 /// A special point somewhere within a step.
@@ -141,7 +142,7 @@ impl Detector {
     /// The first unknown observable.
     pub(crate) fn new(
         watches: &[Watch],
-        observables: &[&'static str],
+        observables: &[Name],
         target: Option<f64>,
         domain: Option<(f64, f64)>,
         extended: Option<Beside>,

@@ -29,7 +29,7 @@ use crate::meridian::Mesh;
 use crate::params::{ParameterError, Shell};
 use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::{Arrow, SymmetricBand};
-use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
+use continuation::{EvalError, Matrix, Name, ParamId, Parameter, Problem, Stability};
 use mesh::{LEAST_ANGLE, Layout};
 use moving::{AtRing, Moving, MovingMesh};
 use std::f64::consts::FRAC_PI_2;
@@ -123,7 +123,7 @@ impl RingLoadProblem {
         let mut moving = MovingMesh::new(Layout::new(elements, grading)?, NOMINAL);
         let (mesh, _) = moving.at(NOMINAL);
         let (coefficients, mass) = (mesh.unknowns(), mesh.mass().clone());
-        let parameter = |name, unit, scale| Parameter { name, unit, scale };
+        let parameter = Parameter::new;
         Ok(RingLoadProblem {
             shell: *shell,
             groups: *groups,
@@ -368,8 +368,8 @@ impl Problem for RingLoadProblem {
         1
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &observe::NAMES
+    fn observables(&self) -> &[Name] {
+        &observe::OBSERVABLES
     }
 
     fn observe(&self, u: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

@@ -6,7 +6,7 @@ use crate::energy;
 use crate::film::NoFilm;
 use crate::meridian::Mesh;
 use crate::resolution::{self, Resolution};
-use continuation::EvalError;
+use continuation::{EvalError, Name, literals};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Names of the observables, in the order of [`RingObservation::to_array`].
@@ -20,6 +20,9 @@ pub const NAMES: [&str; 8] = [
     "pole_over_h",
     "highest_over_h",
 ];
+
+/// The same, as a problem gives them.
+pub(super) static OBSERVABLES: [Name; NAMES.len()] = literals(NAMES);
 
 /// Force in units of `2πχR0`, times this, is what is reported.
 pub(super) const FORCE_UNIT: f64 = 1e6;

@@ -97,7 +97,7 @@ impl WithPlates for Travel<'_, '_> {
     fn with<P: BetweenPlates>(self, problem: &P, x: &[f64], p: &[f64]) -> Self::Output {
         let Travel { case, plates, reported, observer } = self;
         let clock = Instant::now();
-        let name = problem.parameters()[0].name;
+        let name = &problem.parameters()[0].name;
         let settings = two_plates::settings(case, name);
         let traced = Tracer::new(problem, name, x, p, settings.clone())
             .and_then(|tracer| tracer.watching(&force_watches()))

@@ -139,7 +139,7 @@ impl WithPlates for Trace<'_, '_> {
     fn with<P: BetweenPlates>(self, problem: &P, x: &[f64], p: &[f64]) -> Self::Output {
         let Trace { case, observer } = self;
         let clock = Instant::now();
-        let name = problem.parameters()[0].name;
+        let name = &problem.parameters()[0].name;
         let branch = Tracer::new(problem, name, x, p, settings(case, name))
             .and_then(|tracer| tracer.watching(&force_watches()))
             .map(|tracer| tracer.run(&mut listen(observer)))

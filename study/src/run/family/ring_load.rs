@@ -34,7 +34,7 @@ impl Family for RingLoadCase {
         let reported = work.reported;
         let ring_load::Start { problem, u, p } = ring_load::start(case, self)?;
         let setup = Setup {
-            parameter: "alpha",
+            parameter: "alpha".into(),
             u,
             p,
             settings: Settings::default(),
