@@ -66,9 +66,7 @@ impl Family for RingLoadCase {
     }
 
     fn second_parameter(&self, _: &ResolvedCase, key: &str) -> Result<Second, MapError> {
-        let usual = (key == map::MOMENT).then_some(map::USUAL_MOMENT * self.bending);
-        let (value, key) = map::value(self, key)?;
-        Ok(Second { key, value, usual, limits: None })
+        map::second(self, key)
     }
 
     fn attempt(
