@@ -22,6 +22,16 @@ pub enum Direction {
     Retract,
 }
 
+impl Direction {
+    /// Its name, as in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Direction::Approach => "approach",
+            Direction::Retract => "retract",
+        }
+    }
+}
+
 /// What is travelled, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CycleSettings {

@@ -2,9 +2,9 @@
 
 use super::error::{Missing, PlanError};
 use super::lab::{Lab, Wishes};
-use crate::case::{ContactCase, DeviceCase, Law, ProblemCase, ResolvedCase, Stiffness};
+use crate::case::{ContactCase, Device, Law, ProblemCase, ResolvedCase, Stiffness};
+use identify::Key;
 use identify::plan::{Depth, Experiment, QUANTITIES, plan};
-use identify::{Key, LawName};
 use serde_json::json;
 use shell_contact::film::Film;
 use std::fmt::Write as _;
@@ -35,16 +35,12 @@ pub fn planned(case: &ResolvedCase, lab: &Lab, wishes: Wishes<'_>) -> Result<Pla
     let ProblemCase::Contact(contact) = &case.problem else {
         return Err(PlanError::NotContact { case: name() });
     };
-    if contact.device != DeviceCase::Grip {
+    if contact.device != Device::Grip {
         return Err(PlanError::Device { case: name() });
     }
     let noise = lab.noise.ok_or(Missing::Noise)?;
     let lab = with_case(lab, contact, &case.name)?;
-    let law = match contact.shell.law {
-        Law::Hooke => LawName::Hooke,
-        Law::MooneyRivlin { .. } => LawName::MooneyRivlin,
-        Law::Skalak => LawName::Skalak,
-    };
+    let law = contact.shell.law.name();
     Lab::allows(law, wishes)?;
     let setup = lab.setup(law, None, wishes)?;
     let reach = f64::from(setup.contacts) * setup.base[Key::Radius];

@@ -3,7 +3,7 @@
 use super::curves::curves;
 use super::{Attempt, Limits, MapError, Second, Task};
 use crate::case::keys::{FRACTION, NOT_NEGATIVE, POISSON_RATIOS, POISSON_SKALAK};
-use crate::case::{ContactCase, Law, ShellCase};
+use crate::case::{ContactCase, Law, Shell};
 use crate::closest::closest;
 use crate::run::contact::{no_start, problem};
 use crate::run::{Observer, listen, settings};
@@ -32,7 +32,7 @@ fn value_mut<'c>(contact: &'c mut ContactCase, key: &str) -> Option<&'c mut f64>
 }
 
 /// The share `b`, of a law that has it.
-pub(super) fn share_mut(shell: &mut ShellCase) -> Option<&mut f64> {
+pub(super) fn share_mut(shell: &mut Shell) -> Option<&mut f64> {
     match &mut shell.law {
         Law::MooneyRivlin { b } => Some(b),
         Law::Hooke | Law::Skalak => None,

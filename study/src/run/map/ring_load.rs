@@ -18,9 +18,9 @@ const KEYS: [&str; 6] = [MOMENT, "bending", "pressure", "gas_exponent", "poisson
 /// Where the value of a key of the case is kept; `b` only with a law that has it.
 fn value_mut<'r>(ring: &'r mut RingLoadCase, key: &str) -> Option<&'r mut f64> {
     Some(match key {
-        "bending" => &mut ring.bending,
-        "pressure" => &mut ring.pressure,
-        "gas_exponent" => &mut ring.gas_exponent,
+        "bending" => &mut ring.groups.bending,
+        "pressure" => &mut ring.groups.pressure,
+        "gas_exponent" => &mut ring.groups.gas_exponent,
         "poisson" => &mut ring.shell.poisson,
         "b" => return share_mut(&mut ring.shell),
         _ => return None,
@@ -31,7 +31,7 @@ fn value_mut<'r>(ring: &'r mut RingLoadCase, key: &str) -> Option<&'r mut f64> {
 pub(in crate::run) fn second(ring: &RingLoadCase, key: &str) -> Result<Second, MapError> {
     let name = bare(key);
     if name == MOMENT {
-        let usual = Some(USUAL_MOMENT * ring.bending);
+        let usual = Some(USUAL_MOMENT * ring.groups.bending);
         return Ok(Second { key: MOMENT.to_owned(), value: 0.0, usual, limits: None });
     }
     let law = ring.shell.law;
