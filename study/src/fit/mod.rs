@@ -4,6 +4,8 @@ mod error;
 pub mod files;
 pub mod lab;
 pub mod plan;
+#[cfg(test)]
+mod tests;
 
 pub use error::{Failure, Fault, Missing, PlanError, SetupError, Wish};
 
