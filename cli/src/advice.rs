@@ -1,6 +1,7 @@
 //! Errors of the libraries, and what to do about them in the words of the command line.
 
 use study::case::LoadError;
+use study::fit::{Failure, Missing, PlanError, SetupError};
 use study::run::{MapError, RunError};
 use study::store::{CheckpointError, FolderError, StoreError};
 use study::sweep::SweepError;
@@ -92,6 +93,46 @@ impl Advised for MapError {
             MapError::UnknownKey { .. }
             | MapError::OneParameter { .. }
             | MapError::SameParameter { .. } => format!("--over {self}"),
+            _ => self.to_string(),
+        }
+    }
+}
+
+impl Advised for Missing {
+    fn advised(&self) -> String {
+        let advice = match self {
+            Missing::Law => ", or --law NAME, or --law all",
+            Missing::SpringConstant => ": --set instrument.spring_constant=\"0.08 N/m\"",
+            Missing::Radius => " (or --prior radius=\"1.5 um\":\"0.05 um\")",
+            Missing::Noise => ", such as --set instrument.noise=\"50 pN\"",
+        };
+        format!("{self}{advice}")
+    }
+}
+
+impl Advised for SetupError {
+    fn advised(&self) -> String {
+        match self {
+            SetupError::Missing(missing) => missing.advised(),
+            // each begins with the name of the option
+            _ => format!("--{self}"),
+        }
+    }
+}
+
+impl Advised for Failure {
+    fn advised(&self) -> String {
+        match self {
+            Failure::Setup(error) => error.advised(),
+            _ => self.to_string(),
+        }
+    }
+}
+
+impl Advised for PlanError {
+    fn advised(&self) -> String {
+        match self {
+            PlanError::Setup(error) => error.advised(),
             _ => self.to_string(),
         }
     }

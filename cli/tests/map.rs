@@ -95,27 +95,38 @@ fn folds_over_gas_and_material_are_those_of_cases() {
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
         output.stdout
     };
-    for (key, table, from, to) in [
-        ("gas_exponent", "dimensionless", 0.8, 1.4),
-        ("poisson", "shell", 0.3, 0.5),
-        ("b", "shell", 0.2, 1.0),
+    let gas = ["--set", "dimensionless.gas_exponent=1", "--set", "dimensionless.pressure=0.01"];
+    let rubber = ["--set", "shell.law=mooney-rivlin", "--set", "shell.b=0.5"];
+    for (case, more, key, table, from, to) in [
+        ("fig16", &[][..], "gas_exponent", "dimensionless", 0.8, 1.4),
+        ("fig16", &[], "poisson", "shell", 0.3, 0.5),
+        ("fig16", &[], "b", "shell", 0.2, 1.0),
+        ("ring-load", &gas, "gas_exponent", "dimensionless", 0.5, 1.5),
+        ("ring-load", &gas, "poisson", "shell", 0.2, 0.4),
+        ("ring-load", &rubber, "b", "shell", 0.2, 1.0),
     ] {
+        let (first, out) = match case {
+            "ring-load" => ("alpha", format!("ring-{key}")),
+            _ => ("z0", key.to_owned()),
+        };
         let (from, to) = (format!("map.from={from}"), format!("map.to={to}"));
-        run(&["map", "fig16", "--over", key, "--set", &from, "--set", &to, "--out", key]);
-        let csv = fs::read_to_string(place.path().join(key).join("fold-0.csv")).unwrap();
-        assert!(csv.starts_with(&format!("point,z0,{key},")));
+        let over = ["map", case, "--over", key, "--set", &from, "--set", &to, "--out", &out];
+        run(&[&over[..], more].concat());
+        let csv = fs::read_to_string(place.path().join(&out).join("fold-0.csv")).unwrap();
+        assert!(csv.starts_with(&format!("point,{first},{key},")));
         let last: Vec<&str> = csv.lines().last().unwrap().split(',').collect();
         let (mapped, value): (f64, &str) = (last[1].parse().unwrap(), last[2]);
         let changed = format!("{table}.{key}={value}");
-        let trace = run(&["trace", "fig16", "--set", &changed, "--json"]);
+        let trace = run(&[&["trace", case][..], more, &["--set", &changed, "--json"]].concat());
         let trace: Value = serde_json::from_slice(&trace).unwrap();
         let events = trace["events"].as_array().unwrap();
         let folds: Vec<f64> = events
             .iter()
             .filter(|e| e["kind"] == "fold")
-            .filter_map(|e| e["z0"].as_f64())
+            .filter_map(|e| e[first].as_f64())
             .collect();
-        assert!(folds.iter().any(|fold| (fold - mapped).abs() < 1e-8), "{key}: {mapped} {folds:?}");
+        let found = folds.iter().any(|fold| (fold - mapped).abs() < 1e-8);
+        assert!(found, "{case}, {key}: {mapped} {folds:?}");
     }
 }
 
@@ -142,6 +153,9 @@ fn wrong_keys_are_refused_with_the_right_ones() {
             vec!["fig16", "--over", "b", "--set", "map.to=2"],
             vec!["map.to = 2: b must be from 0 to 1"],
         ),
+        (vec!["ring-load", "--over", "alpha"], vec!["is the parameter of the branch"]),
+        (vec!["ring-load", "--over", "poison"], vec!["did you mean poisson?", "moment, bending"]),
+        (vec!["ring-load", "--over", "b"], vec!["a shell of the law hooke has no such parameter"]),
         (vec!["plp", "--over", "p"], vec!["plp has no parameter besides p"]),
         (vec!["pressurised-sphere", "--over", "poisson"], vec!["allowed here: bending"]),
         (vec!["fig16", "--over", "adhesion", "--set", "map.form=1"], vec!["map.form", "from"]),

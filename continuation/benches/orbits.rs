@@ -73,7 +73,7 @@ impl<const N: usize> Problem for System<N> {
 }
 
 const fn parameter(name: &'static str, scale: f64) -> [Parameter; 1] {
-    [Parameter { name, unit: "", scale }]
+    [Parameter::new(name, "", scale)]
 }
 
 fn run<const N: usize>(
@@ -85,7 +85,7 @@ fn run<const N: usize>(
     if std::env::args().skip(1).any(|only| !only.starts_with('-') && !name.starts_with(&only)) {
         return;
     }
-    let parameter = system.parameters[0].name;
+    let parameter = &system.parameters[0].name[..];
     let settings = Settings { target: Some(to), ..Settings::default() };
     let equilibria =
         Tracer::new(system, parameter, &start, &[from], settings).expect("a start").run_quietly();

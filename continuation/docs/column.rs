@@ -1,5 +1,5 @@
 use continuation::linalg::{Matrix, SymmetricBand};
-use continuation::{EvalError, ParamId, Parameter, Problem, Stability};
+use continuation::{EvalError, Name, ParamId, Parameter, Problem, Stability, names};
 
 /// A column of length 1 whose ends stay vertical: −θ″ = λ sin θ, θ(0) = θ(1) = 0, with `n` interior
 /// nodes. Energy: Σ (θ_{i+1} − θ_i)² / (2h) + λ h Σ cos θ_i.
@@ -13,6 +13,8 @@ impl Column {
     }
 }
 
+static PARAMETERS: [Parameter; 1] = [Parameter::new("load", "", 10.0)];
+
 impl Problem for Column {
     type Jacobian = SymmetricBand;
 
@@ -21,7 +23,7 @@ impl Problem for Column {
     }
 
     fn parameters(&self) -> &[Parameter] {
-        &[Parameter { name: "load", unit: "", scale: 10.0 }]
+        &PARAMETERS
     }
 
     fn new_jacobian(&self) -> SymmetricBand {
@@ -76,8 +78,8 @@ impl Problem for Column {
         Stability::EnergyHessian
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &["angle", "sway", "height"]
+    fn observables(&self) -> &[Name] {
+        names!["angle", "sway", "height"]
     }
 
     // the angle at the middle; how far the upper end moves sideways; how high it stands

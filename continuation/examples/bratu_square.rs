@@ -9,7 +9,8 @@
 
 use continuation::linalg::{Matrix, Sparse};
 use continuation::{
-    EvalError, EventKind, ParamId, Parameter, Problem, Settings, Stability, Tracer, Watch,
+    EvalError, EventKind, Name, ParamId, Parameter, Problem, Settings, Stability, Tracer, Watch,
+    names,
 };
 use std::ops::ControlFlow;
 
@@ -37,7 +38,7 @@ impl Square {
             .flat_map(|i| std::iter::once((i, i)).chain(neighbours(side, i).map(move |j| (i, j))))
             .collect();
         let empty = Sparse::new(side * side, &pattern)?;
-        Ok(Square { side, parameters: [Parameter { name: "lambda", unit: "", scale: 1.0 }], empty })
+        Ok(Square { side, parameters: [Parameter::new("lambda", "", 1.0)], empty })
     }
 
     /// Intervals to the square.
@@ -99,8 +100,8 @@ impl Problem for Square {
         Stability::Dynamics
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &["u_max"]
+    fn observables(&self) -> &[Name] {
+        names!["u_max"]
     }
 
     fn observe(&self, u: &[f64], _: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

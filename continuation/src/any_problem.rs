@@ -1,12 +1,13 @@
 //! A problem of unknown type: the engine is compiled for it once, in this package.
 
 use crate::linalg::AnyMatrix;
+use crate::name::Name;
 use crate::problem::{EvalError, ParamId, Parameter, Problem, SpecialPoints, Stability};
 use std::ops::Deref;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// What a [`Problem`] does, whatever its matrices are.
-pub(crate) trait AnyProblem {
+pub(crate) trait AnyProblem: Send + Sync {
     fn dim(&self) -> usize;
     fn parameters(&self) -> &[Parameter];
     fn new_jacobian(&self) -> AnyMatrix;
@@ -42,7 +43,7 @@ pub(crate) trait AnyProblem {
     fn energy_hessian(&self, u: &[f64], p: &[f64], h: &mut AnyMatrix) -> Result<(), EvalError>;
     fn multipliers(&self) -> usize;
     fn special_points(&self) -> Option<&dyn SpecialPoints>;
-    fn observables(&self) -> &[&'static str];
+    fn observables(&self) -> &[Name];
     fn observe(&self, u: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError>;
     fn observable_slope(
         &self,
@@ -64,7 +65,7 @@ pub(crate) enum Held<'a> {
     /// Of somebody else.
     Borrowed(&'a DynProblem<'a>),
     /// Kept as long as anybody has it.
-    Shared(Rc<DynProblem<'a>>),
+    Shared(Arc<DynProblem<'a>>),
 }
 
 impl<'a> Deref for Held<'a> {
@@ -171,7 +172,7 @@ impl<P: Problem> AnyProblem for P {
         Problem::special_points(self)
     }
 
-    fn observables(&self) -> &[&'static str] {
+    fn observables(&self) -> &[Name] {
         Problem::observables(self)
     }
 

@@ -1,6 +1,7 @@
 //! A reference to a problem is a problem, also one to a problem of unknown type:
 //! `&dyn Problem<Jacobian = Dense>`.
 
+use crate::name::Name;
 use crate::problem::{EvalError, ParamId, Parameter, Problem, SpecialPoints, Stability};
 
 impl<P: Problem + ?Sized> Problem for &P {
@@ -91,7 +92,7 @@ impl<P: Problem + ?Sized> Problem for &P {
         (**self).special_points()
     }
 
-    fn observables(&self) -> &[&'static str] {
+    fn observables(&self) -> &[Name] {
         (**self).observables()
     }
 

@@ -1,16 +1,17 @@
 //! A small problem written once for every kind of number: derivatives by dual numbers.
 
 use crate::linalg::{Dense, Matrix};
+use crate::name::Name;
+use crate::pool::Pool;
 use crate::problem::{EvalError, ParamId, Parameter, Problem, Stability, check_finite};
 use num_dual::{Dual64, DualNum};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A number on which a residual is evaluated: `f64`, or one that carries derivatives along.
 pub trait Number: DualNum<Primitive = f64> + Copy {}
 impl<D: DualNum<Primitive = f64> + Copy> Number for D {}
 
 /// `f(u, p)` on any kind of [`Number`].
-pub trait Residual {
+pub trait Residual: Send + Sync {
     /// Number of unknowns.
     fn dim(&self) -> usize;
     /// The parameters, in the order of `p`.
@@ -23,7 +24,7 @@ pub trait Residual {
         Stability::Dynamics
     }
     /// Names of what [`Residual::observe`] computes.
-    fn observables(&self) -> &[&'static str] {
+    fn observables(&self) -> &[Name] {
         &[]
     }
     /// Scalar functions of a state, `out` in the order of [`Residual::observables`].
@@ -49,7 +50,7 @@ pub trait Residual {
 ///         r[1] = x * b - x * x * y;
 ///     }
 /// }
-/// let problem = DualProblem::new(Brusselator(vec![Parameter { name: "b", unit: "", scale: 1.0 }]));
+/// let problem = DualProblem::new(Brusselator(vec![Parameter::new("b", "", 1.0)]));
 /// let settings = Settings { target: Some(3.0), ..Settings::default() };
 /// let branch = Tracer::new(&problem, "b", &[1.0, 1.0], &[1.0], settings)?
 ///     .run(&mut |_| ControlFlow::Continue(()));
@@ -59,7 +60,7 @@ pub trait Residual {
 /// ```
 pub struct DualProblem<R> {
     residual: R,
-    scratch: Mutex<Scratch>,
+    scratch: Pool<Scratch>,
 }
 
 struct Scratch {
@@ -72,15 +73,8 @@ struct Scratch {
 impl<R: Residual> DualProblem<R> {
     /// The problem of this residual.
     pub fn new(residual: R) -> Self {
-        let zero = Dual64::from_re(0.0);
-        let n = residual.dim();
-        let scratch = Scratch {
-            u: vec![zero; n],
-            p: vec![zero; residual.parameters().len()],
-            r: vec![zero; n],
-            observed: vec![zero; residual.observables().len()],
-        };
-        DualProblem { residual, scratch: Mutex::new(scratch) }
+        let scratch = Pool::new(Scratch::new(&residual));
+        DualProblem { residual, scratch }
     }
 
     /// The residual.
@@ -88,13 +82,23 @@ impl<R: Residual> DualProblem<R> {
         &self.residual
     }
 
-    /// Work space, which is filled before it is read: what a thread that panicked left in it does not matter.
-    fn scratch(&self) -> MutexGuard<'_, Scratch> {
-        self.scratch.lock().unwrap_or_else(PoisonError::into_inner)
+    fn with<T>(&self, evaluate: impl FnOnce(&mut Scratch) -> T) -> T {
+        self.scratch.with(|| Scratch::new(&self.residual), evaluate)
     }
 }
 
 impl Scratch {
+    fn new(residual: &impl Residual) -> Self {
+        let zero = Dual64::from_re(0.0);
+        let n = residual.dim();
+        Scratch {
+            u: vec![zero; n],
+            p: vec![zero; residual.parameters().len()],
+            r: vec![zero; n],
+            observed: vec![zero; residual.observables().len()],
+        }
+    }
+
     /// The state, with derivatives along `(du, dp)`; missing ones are zero.
     fn place(
         &mut self,
@@ -137,18 +141,19 @@ impl<R: Residual> Problem for DualProblem<R> {
     }
 
     fn jacobian(&self, u: &[f64], p: &[f64], j: &mut Dense) -> Result<(), EvalError> {
-        let mut scratch = self.scratch();
-        j.set_zero();
-        for k in 0..u.len() {
-            scratch.place(u, p, unit(k), |_| 0.0);
-            let Scratch { u, p, r, .. } = &mut *scratch;
-            self.residual.evaluate(u, p, r);
-            for (a, r) in j.column_mut(k).iter_mut().zip(r.iter()) {
-                *a = r.eps;
+        self.with(|scratch| {
+            j.set_zero();
+            for k in 0..u.len() {
+                scratch.place(u, p, unit(k), |_| 0.0);
+                let Scratch { u, p, r, .. } = scratch;
+                self.residual.evaluate(u, p, r);
+                for (a, r) in j.column_mut(k).iter_mut().zip(r.iter()) {
+                    *a = r.eps;
+                }
+                check_finite(j.column(k))?;
             }
-            check_finite(j.column(k))?;
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     fn parameter_derivative(
@@ -158,19 +163,20 @@ impl<R: Residual> Problem for DualProblem<R> {
         which: ParamId,
         out: &mut [f64],
     ) -> Result<(), EvalError> {
-        let mut scratch = self.scratch();
-        scratch.place(u, p, |_| 0.0, unit(which.0));
-        let Scratch { u, p, r, .. } = &mut *scratch;
-        self.residual.evaluate(u, p, r);
-        out.iter_mut().zip(r.iter()).for_each(|(o, r)| *o = r.eps);
-        check_finite(out)
+        self.with(|scratch| {
+            scratch.place(u, p, |_| 0.0, unit(which.0));
+            let Scratch { u, p, r, .. } = scratch;
+            self.residual.evaluate(u, p, r);
+            out.iter_mut().zip(r.iter()).for_each(|(o, r)| *o = r.eps);
+            check_finite(out)
+        })
     }
 
     fn stability(&self) -> Stability {
         self.residual.stability()
     }
 
-    fn observables(&self) -> &[&'static str] {
+    fn observables(&self) -> &[Name] {
         self.residual.observables()
     }
 
@@ -188,10 +194,11 @@ impl<R: Residual> Problem for DualProblem<R> {
         du: &[f64],
         dp: f64,
     ) -> Result<Option<f64>, EvalError> {
-        let mut scratch = self.scratch();
-        scratch.place(u, p, |i| du[i], |i| if i == which.0 { dp } else { 0.0 });
-        let Scratch { u, p, observed, .. } = &mut *scratch;
-        self.residual.observe(u, p, observed);
-        Ok(Some(observed[k].eps))
+        self.with(|scratch| {
+            scratch.place(u, p, |i| du[i], |i| if i == which.0 { dp } else { 0.0 });
+            let Scratch { u, p, observed, .. } = scratch;
+            self.residual.observe(u, p, observed);
+            Ok(Some(observed[k].eps))
+        })
     }
 }

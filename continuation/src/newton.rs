@@ -11,7 +11,7 @@ use crate::problem::{EvalError, ParamId, Problem, check_pattern};
 use crate::sound::{ProblemError, check_lengths, check_sizes};
 
 /// Why Newton's method gave no solution.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NewtonError {
     /// The problem is malformed, or a vector has the wrong length.

@@ -2,17 +2,39 @@
 
 use crate::branch::EventKind;
 use crate::linalg::{Matrix, OutsidePattern};
+use crate::name::Name;
+use std::borrow::Cow;
 
 /// A parameter of a problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
     /// Name used in tables and files.
-    pub name: &'static str,
+    pub name: Name,
     /// Unit, for people; empty when dimensionless.
-    pub unit: &'static str,
+    pub unit: Name,
     /// A typical magnitude, positive, in the parameter's unit: difference steps are relative to it,
     /// and it stands for the range of a trace that has neither target nor domain.
     pub scale: f64,
+}
+
+impl Parameter {
+    /// A parameter whose name and unit are literals; [`Parameter::named`] takes strings of any kind.
+    pub const fn new(name: &'static str, unit: &'static str, scale: f64) -> Self {
+        Parameter { name: Cow::Borrowed(name), unit: Cow::Borrowed(unit), scale }
+    }
+
+    /// A parameter with a name and a unit that may be made as the program runs.
+    ///
+    /// ```
+    /// use continuation::Parameter;
+    ///
+    /// let loads: Vec<Parameter> =
+    ///     (1..=3).map(|i| Parameter::named(format!("load_{i}"), "N", 1.0)).collect();
+    /// assert_eq!(loads[2].name, "load_3");
+    /// ```
+    pub fn named(name: impl Into<Name>, unit: impl Into<Name>, scale: f64) -> Self {
+        Parameter { name: name.into(), unit: unit.into(), scale }
+    }
 }
 
 /// Index of a parameter in [`Problem::parameters`].
@@ -85,8 +107,11 @@ pub enum Stability {
 /// [`Problem::new_jacobian`] should allocate. States are tried that are no solutions, some of them
 /// far from one: a method that has no value there returns an error and does not panic.
 ///
+/// A problem may be evaluated by several threads at once. Work space that is not in the matrix stands behind a
+/// lock, or is made anew.
+///
 /// [`crate::guide::tutorial`] builds one step by step; [`crate::check_derivatives`] tests it.
-pub trait Problem {
+pub trait Problem: Send + Sync {
     /// Storage of the Jacobian; decides the linear algebra.
     type Jacobian: Matrix;
 
@@ -219,7 +244,7 @@ pub trait Problem {
 
     /// Names of the scalar functions of a state that are reported at every point and on which
     /// events can be placed ([`crate::Watch`]).
-    fn observables(&self) -> &[&'static str] {
+    fn observables(&self) -> &[Name] {
         &[]
     }
 

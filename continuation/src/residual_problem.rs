@@ -2,8 +2,9 @@
 
 use crate::differences::{Ladder, magnitude, magnitudes};
 use crate::linalg::{Band, Dense, Matrix, OutsidePattern, Sparse};
+use crate::name::Name;
+use crate::pool::Pool;
 use crate::problem::{EvalError, ParamId, Parameter, Problem, Stability, check_finite};
-use std::cell::RefCell;
 
 /// `f(u, p) = 0` with a Jacobian of type `J` that is taken by differences: [`DenseProblem`],
 /// [`BandProblem`] or [`SparseProblem`].
@@ -22,9 +23,9 @@ pub struct ResidualProblem<J, F> {
     f: F,
     empty: J,
     colours: Vec<Colour>,
-    names: Vec<&'static str>,
+    names: Vec<Name>,
     observables: Vec<Box<Observable>>,
-    scratch: RefCell<Scratch>,
+    scratch: Pool<Scratch>,
 }
 
 /// A [`ResidualProblem`] with a dense Jacobian: for up to some tens of unknowns.
@@ -78,10 +79,10 @@ pub type BandProblem<F> = ResidualProblem<Band, F>;
 pub type SparseProblem<F> = ResidualProblem<Sparse, F>;
 
 /// A residual `f(u, p, r)` behind a pointer ([`ResidualProblem::boxed`]).
-pub type BoxedResidual = Box<dyn Fn(&[f64], &[f64], &mut [f64])>;
+pub type BoxedResidual = Box<dyn Fn(&[f64], &[f64], &mut [f64]) + Send + Sync>;
 
 /// A scalar function of unknowns and parameters.
-type Observable = dyn Fn(&[f64], &[f64]) -> f64;
+type Observable = dyn Fn(&[f64], &[f64]) -> f64 + Send + Sync;
 
 /// Columns of which no two have an entry in the same row.
 struct Colour {
@@ -95,6 +96,13 @@ struct Scratch {
     p: Vec<f64>,
     unit: Vec<f64>,
     ladder: Ladder,
+}
+
+impl Scratch {
+    fn new(n: usize, parameters: usize) -> Self {
+        let (u, p, unit) = (vec![0.0; n], vec![0.0; parameters], vec![0.0; n]);
+        Scratch { u, p, unit, ladder: Ladder::new(n) }
+    }
 }
 
 mod sealed {
@@ -127,12 +135,12 @@ mod sealed {
 }
 use sealed::Entries;
 
-impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
+impl<F: Fn(&[f64], &[f64], &mut [f64]) + Send + Sync> DenseProblem<F> {
     /// `n` unknowns, named parameters, and `f(u, p, r)` that writes the residual to `r`; read as
     /// `du/dt = f`, so that eigenvalues with positive real part are unstable. `u` and `r` have length
     /// `n`, `p` that of the names; every entry of `r` is to be written. A state without a value gives
     /// NaN, which the problem reports as an error.
-    pub fn from_residual(n: usize, parameters: &[&'static str], f: F) -> Self {
+    pub fn from_residual(n: usize, parameters: &[impl Clone + Into<Name>], f: F) -> Self {
         let all = |column: usize| Colour {
             columns: vec![column],
             owner: vec![u32::try_from(column).ok(); n],
@@ -141,13 +149,13 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> DenseProblem<F> {
     }
 }
 
-impl<F: Fn(&[f64], &[f64], &mut [f64])> BandProblem<F> {
+impl<F: Fn(&[f64], &[f64], &mut [f64]) + Send + Sync> BandProblem<F> {
     /// As [`DenseProblem::from_residual`], where `f[i]` depends on no other unknowns than
     /// `u[i − below]` to `u[i + above]`; `band` holds both.
     pub fn from_residual(
         n: usize,
         band: (usize, usize),
-        parameters: &[&'static str],
+        parameters: &[impl Clone + Into<Name>],
         f: F,
     ) -> Self {
         let (below, above) = band;
@@ -166,7 +174,7 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> BandProblem<F> {
     }
 }
 
-impl<F: Fn(&[f64], &[f64], &mut [f64])> SparseProblem<F> {
+impl<F: Fn(&[f64], &[f64], &mut [f64]) + Send + Sync> SparseProblem<F> {
     /// As [`DenseProblem::from_residual`], where `f[i]` depends on `u[j]` for the `(i, j)` of `pattern`
     /// only. One colour more than a row has entries at most, usually.
     ///
@@ -175,7 +183,7 @@ impl<F: Fn(&[f64], &[f64], &mut [f64])> SparseProblem<F> {
     pub fn from_residual(
         n: usize,
         pattern: &[(usize, usize)],
-        parameters: &[&'static str],
+        parameters: &[impl Clone + Into<Name>],
         f: F,
     ) -> Result<Self, OutsidePattern> {
         let empty = Sparse::new(n, pattern)?;
@@ -203,16 +211,17 @@ fn coloured(pattern: &Sparse) -> Vec<Colour> {
     colours
 }
 
-impl<J, F: Fn(&[f64], &[f64], &mut [f64])> ResidualProblem<J, F> {
-    fn of(n: usize, names: &[&'static str], f: F, empty: J, colours: Vec<Colour>) -> Self {
+impl<J, F: Fn(&[f64], &[f64], &mut [f64]) + Send + Sync> ResidualProblem<J, F> {
+    fn of(
+        n: usize,
+        names: &[impl Clone + Into<Name>],
+        f: F,
+        empty: J,
+        colours: Vec<Colour>,
+    ) -> Self {
         let parameters: Vec<Parameter> =
-            names.iter().map(|&name| Parameter { name, unit: "", scale: 1.0 }).collect();
-        let scratch = Scratch {
-            u: vec![0.0; n],
-            p: vec![0.0; parameters.len()],
-            unit: vec![0.0; n],
-            ladder: Ladder::new(n),
-        };
+            names.iter().map(|name| Parameter::named(name.clone(), "", 1.0)).collect();
+        let scratch = Pool::new(Scratch::new(n, parameters.len()));
         ResidualProblem {
             n,
             parameters,
@@ -222,7 +231,7 @@ impl<J, F: Fn(&[f64], &[f64], &mut [f64])> ResidualProblem<J, F> {
             colours,
             names: Vec::new(),
             observables: Vec::new(),
-            scratch: RefCell::new(scratch),
+            scratch,
         }
     }
 
@@ -238,10 +247,10 @@ impl<J, F: Fn(&[f64], &[f64], &mut [f64])> ResidualProblem<J, F> {
     #[must_use]
     pub fn observing(
         mut self,
-        name: &'static str,
-        value: impl Fn(&[f64], &[f64]) -> f64 + 'static,
+        name: impl Into<Name>,
+        value: impl Fn(&[f64], &[f64]) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.names.push(name);
+        self.names.push(name.into());
         self.observables.push(Box::new(value));
         self
     }
@@ -286,6 +295,11 @@ impl<J, F: Fn(&[f64], &[f64], &mut [f64])> ResidualProblem<J, F> {
         self
     }
 
+    /// Evaluates with work space.
+    fn with<R>(&self, evaluate: impl FnOnce(&mut Scratch) -> R) -> R {
+        self.scratch.with(|| Scratch::new(self.n, self.parameters.len()), evaluate)
+    }
+
     /// The value in the middle, its rounding errors, and the magnitudes of the unknowns.
     fn centre(&self, scratch: &mut Scratch, u: &[f64], p: &[f64]) -> Result<(), EvalError> {
         let Scratch { u: place, p: values, unit, ladder } = scratch;
@@ -325,7 +339,9 @@ impl<J, F: Fn(&[f64], &[f64], &mut [f64])> ResidualProblem<J, F> {
     }
 }
 
-impl<J: Entries, F: Fn(&[f64], &[f64], &mut [f64])> Problem for ResidualProblem<J, F> {
+impl<J: Entries, F: Fn(&[f64], &[f64], &mut [f64]) + Send + Sync> Problem
+    for ResidualProblem<J, F>
+{
     type Jacobian = J;
 
     fn dim(&self) -> usize {
@@ -346,19 +362,20 @@ impl<J: Entries, F: Fn(&[f64], &[f64], &mut [f64])> Problem for ResidualProblem<
     }
 
     fn jacobian(&self, u: &[f64], p: &[f64], j: &mut J) -> Result<(), EvalError> {
-        let mut scratch = self.scratch.borrow_mut();
-        self.centre(&mut scratch, u, p)?;
-        j.set_zero();
-        for colour in &self.colours {
-            self.along(&mut scratch, colour, u);
-            check_finite(&scratch.ladder.derivative)?;
-            for (row, owner) in colour.owner.iter().enumerate() {
-                if let Some(column) = owner {
-                    j.put(row, *column as usize, scratch.ladder.derivative[row]);
+        self.with(|scratch| {
+            self.centre(scratch, u, p)?;
+            j.set_zero();
+            for colour in &self.colours {
+                self.along(scratch, colour, u);
+                check_finite(&scratch.ladder.derivative)?;
+                for (row, owner) in colour.owner.iter().enumerate() {
+                    if let Some(column) = owner {
+                        j.put(row, *column as usize, scratch.ladder.derivative[row]);
+                    }
                 }
             }
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     fn parameter_derivative(
@@ -368,11 +385,12 @@ impl<J: Entries, F: Fn(&[f64], &[f64], &mut [f64])> Problem for ResidualProblem<
         which: ParamId,
         out: &mut [f64],
     ) -> Result<(), EvalError> {
-        let mut scratch = self.scratch.borrow_mut();
-        self.centre(&mut scratch, u, p)?;
-        self.along_parameter(&mut scratch, which);
-        out.copy_from_slice(&scratch.ladder.derivative);
-        check_finite(out)
+        self.with(|scratch| {
+            self.centre(scratch, u, p)?;
+            self.along_parameter(scratch, which);
+            out.copy_from_slice(&scratch.ladder.derivative);
+            check_finite(out)
+        })
     }
 
     fn derivative_error(
@@ -384,31 +402,32 @@ impl<J: Entries, F: Fn(&[f64], &[f64], &mut [f64])> Problem for ResidualProblem<
         dp: f64,
         out: &mut [f64],
     ) -> Result<(), EvalError> {
-        let mut scratch = self.scratch.borrow_mut();
-        self.centre(&mut scratch, u, p)?;
-        out.fill(0.0);
-        for colour in &self.colours {
-            self.along(&mut scratch, colour, u);
-            for (row, owner) in colour.owner.iter().enumerate() {
-                if let Some(column) = owner {
-                    out[row] += scratch.ladder.error[row] * du[*column as usize].abs();
+        self.with(|scratch| {
+            self.centre(scratch, u, p)?;
+            out.fill(0.0);
+            for colour in &self.colours {
+                self.along(scratch, colour, u);
+                for (row, owner) in colour.owner.iter().enumerate() {
+                    if let Some(column) = owner {
+                        out[row] += scratch.ladder.error[row] * du[*column as usize].abs();
+                    }
                 }
             }
-        }
-        if dp != 0.0 {
-            self.along_parameter(&mut scratch, which);
-            for (out, error) in out.iter_mut().zip(&scratch.ladder.error) {
-                *out += error * dp.abs();
+            if dp != 0.0 {
+                self.along_parameter(scratch, which);
+                for (out, error) in out.iter_mut().zip(&scratch.ladder.error) {
+                    *out += error * dp.abs();
+                }
             }
-        }
-        check_finite(out)
+            check_finite(out)
+        })
     }
 
     fn stability(&self) -> Stability {
         self.stability
     }
 
-    fn observables(&self) -> &[&'static str] {
+    fn observables(&self) -> &[Name] {
         &self.names
     }
 

@@ -1,6 +1,8 @@
 //! Small problems with known answers, for examples and tests.
 
 use crate::linalg::{Dense, Matrix, SymmetricBand};
+use crate::name::Name;
+use crate::names;
 use crate::problem::{EvalError, ParamId, Parameter, Problem, Stability};
 
 /// The cusp `μ + λ x − x³ = 0`, read as `dx/dt`.
@@ -9,10 +11,8 @@ use crate::problem::{EvalError, ParamId, Parameter, Problem, Stability};
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Cusp;
 
-const CUSP_PARAMETERS: [Parameter; 2] = [
-    Parameter { name: "mu", unit: "", scale: 1.0 },
-    Parameter { name: "lambda", unit: "", scale: 1.0 },
-];
+static CUSP_PARAMETERS: [Parameter; 2] =
+    [Parameter::new("mu", "", 1.0), Parameter::new("lambda", "", 1.0)];
 
 impl Problem for Cusp {
     type Jacobian = Dense;
@@ -54,8 +54,8 @@ impl Problem for Cusp {
         Stability::Dynamics
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &["x"]
+    fn observables(&self) -> &[Name] {
+        names!["x"]
     }
 
     fn observe(&self, u: &[f64], _p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
@@ -88,7 +88,7 @@ pub struct Bratu {
     n: usize,
 }
 
-const BRATU_PARAMETERS: [Parameter; 1] = [Parameter { name: "lambda", unit: "", scale: 1.0 }];
+static BRATU_PARAMETERS: [Parameter; 1] = [Parameter::new("lambda", "", 1.0)];
 
 impl Bratu {
     /// With `n ≥ 1` interior nodes.
@@ -163,8 +163,8 @@ impl Problem for Bratu {
         Stability::EnergyHessian
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &["max_u"]
+    fn observables(&self) -> &[Name] {
+        names!["max_u"]
     }
 
     /// The maximum is at the middle of the interval; between two nodes there, the mean of four

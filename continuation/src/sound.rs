@@ -2,11 +2,12 @@
 
 use crate::any_problem::DynProblem;
 use crate::linalg::{Matrix, OutsidePattern};
+use crate::name::Name;
 use crate::problem::ParamId;
 use crate::singular::arbitrary;
 
 /// What is wrong with a problem, whatever the state.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProblemError {
     /// [`Problem::dim`](crate::Problem::dim) is zero.
@@ -45,7 +46,7 @@ pub enum ProblemError {
     #[error("the scale of `{parameter}` is {value}; it must be positive and finite")]
     Scale {
         /// Name of the parameter.
-        parameter: &'static str,
+        parameter: Name,
         /// The scale.
         value: f64,
     },
@@ -100,11 +101,11 @@ pub(crate) fn examine(
     p: &[f64],
 ) -> Result<(), ProblemError> {
     let n = problem.dim();
-    let parameter = problem.parameters()[which.0].name;
+    let parameter = &problem.parameters()[which.0].name;
     let scales = [Some(problem.parameters()[which.0].scale), problem.unknown_scale(which)];
     for value in scales.into_iter().flatten() {
         if !(value.is_finite() && value > 0.0) {
-            return Err(ProblemError::Scale { parameter, value });
+            return Err(ProblemError::Scale { parameter: parameter.clone(), value });
         }
     }
     let mut mass = problem.new_jacobian();

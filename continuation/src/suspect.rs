@@ -8,6 +8,7 @@
 use crate::any_problem::DynProblem;
 use crate::differences::{self, magnitude};
 use crate::linalg::{Matrix, max_abs};
+use crate::name::Name;
 use crate::problem::ParamId;
 use crate::singular::arbitrary;
 use crate::step::Guard;
@@ -26,7 +27,7 @@ const LEAST: f64 = 1e-3;
 #[derive(Debug, Clone, PartialEq)]
 pub struct WrongDerivative {
     /// The parameter whose derivative it is; `None` of the Jacobian.
-    pub parameter: Option<&'static str>,
+    pub parameter: Option<Name>,
     /// Row of the largest deviation.
     pub row: usize,
     /// What the problem says: an entry, or a row of the Jacobian times a direction.
@@ -40,7 +41,7 @@ pub struct WrongDerivative {
 impl fmt::Display for WrongDerivative {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { row, given, measured, error, .. } = self;
-        match self.parameter {
+        match &self.parameter {
             Some(name) => write!(f, "the derivative by `{name}` is wrong: its entry {row}")?,
             None => write!(f, "the Jacobian is wrong: along a direction row {row}")?,
         }
@@ -120,14 +121,20 @@ fn compare(
     let inside = |p: f64| guard.nearest(p) == p;
     let residual = |u: &[f64], p: &[f64], r: &mut [f64]| problem.residual(u, p, r);
     let ladder = differences::along(residual, (u, p), which, (du, dp), unit, inside);
-    let parameter = direction.is_none().then_some(problem.parameters()[which.0].name);
+    let parameter = direction.is_none().then_some(&problem.parameters()[which.0].name);
     let size = max_abs(&ladder.derivative).max(max_abs(&given));
     let rows = (0..n).filter_map(|row| {
         let (given, measured) = (given[row], ladder.derivative[row]);
         let error = ladder.error[row] + missed[row] + f64::EPSILON * size;
         let deviation = (given - measured).abs();
         let wrong = deviation > TELL * given.abs().max(measured.abs()) + SURE * error;
-        wrong.then_some(WrongDerivative { parameter, row, given, measured, error })
+        wrong.then_some(WrongDerivative {
+            parameter: parameter.cloned(),
+            row,
+            given,
+            measured,
+            error,
+        })
     });
     Some(rows.collect())
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use study::case::{
-    CatalogueEntry, DeviceCase, LoadError, LoadedCase, Override, ProblemCase, ResolvedCase,
+    CatalogueEntry, Device, LoadError, LoadedCase, Override, ProblemCase, ResolvedCase,
     StabilityCase, load_text,
 };
 use study::record::{Outline, State, TraceResult};
@@ -182,7 +182,7 @@ impl Bench {
             }
         };
         let result = match &case.problem {
-            ProblemCase::Contact(contact) if contact.device == DeviceCase::Grip => {
+            ProblemCase::Contact(contact) if contact.device == Device::Grip => {
                 let (problem, traced) = contact_branch(&case, contact, observer)?;
                 let mut result = contact_result(&case, &traced, begun.elapsed().as_secs_f64());
                 let points = &traced.branch.points;

@@ -12,8 +12,9 @@
 //! where the plate's distance turns back.
 
 use crate::error::ModelError;
-use crate::parameters::{Key, LawName, Parameters};
+use crate::parameters::{Key, Parameters};
 use continuation::{Matrix, ParamId, Problem, Settings, Tracer};
+use shell_contact::LawName;
 use shell_contact::contact::parameter;
 use shell_contact::{ContactProblem, Dimensionless, Mesh, Resolution};
 use std::f64::consts::PI;
@@ -161,7 +162,7 @@ pub fn trace(
     effort: Effort,
     wanted: &[Group],
 ) -> Result<ShellBranch, ModelError> {
-    let shell = law.shell(p);
+    let shell = p.shell(law);
     let groups = groups(p);
     let mesh = Mesh::uniform(effort.elements)?;
     let problem = ContactProblem::new(&shell, &groups, mesh)?;

@@ -5,7 +5,7 @@ use continuation::{EvalError, TraceError};
 use shell_contact::ParameterError;
 
 /// Why the model has no value for some parameters.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
     /// A parameter is outside what the model allows.
@@ -44,7 +44,7 @@ pub enum ModelError {
 }
 
 /// Why there is no fit.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
     /// Stopped before there was anything to keep.

@@ -19,4 +19,5 @@ pub use attend::{Attended, Progress, Stage};
 pub use data::{Curve, Layout};
 pub use error::{DataError, FitError, ModelError};
 pub use identification::{Identification, PROFILED, Profiles, identify, identify_attended};
-pub use parameters::{Key, LawName, Parameters};
+pub use parameters::{Key, Parameters};
+pub use shell_contact::LawName;

@@ -6,7 +6,8 @@ use crate::branch::{Effort, GROUPS, Group, Span, trace};
 use crate::data::Curve;
 use crate::error::ModelError;
 use crate::lever::{LeverBranch, Reading};
-use crate::parameters::{Key, LawName, Parameters};
+use crate::parameters::{Key, Parameters};
+use shell_contact::LawName;
 use shell_contact::Resolution;
 
 /// Gap of the free shell, in `R0`, from which the branch starts at the farthest: beyond it the film pulls

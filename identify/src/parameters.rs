@@ -1,7 +1,7 @@
 //! The quantities of a measurement: their keys, units, and the coordinates in which they are fitted.
 
 use serde::{Deserialize, Serialize};
-use shell_contact::{Law, Shell};
+use shell_contact::{LawName, Shell};
 use std::ops::{Index, IndexMut};
 
 /// How many keys there are.
@@ -177,49 +177,13 @@ impl Parameters {
         self[Key::Chi] / self.thickness()
     }
 
+    /// The material of a law with these constants.
+    pub fn shell(&self, law: LawName) -> Shell {
+        Shell { law: law.with_b(self[Key::MooneyB]), poisson: self[Key::Poisson] }
+    }
+
     /// `√(χ k_b)`, N: what the slope of the first contact fixes, Eq. (32).
     pub fn force_scale(&self) -> f64 {
         (self[Key::Chi] * self[Key::Bending]).sqrt()
-    }
-}
-
-/// The laws of the membrane by which a curve can be fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum LawName {
-    /// Hooke's, Eq. (6a).
-    Hooke,
-    /// Mooney and Rivlin's, Eq. (6b), with the share [`Key::MooneyB`].
-    MooneyRivlin,
-    /// Skalak's.
-    Skalak,
-}
-
-impl LawName {
-    /// All of them.
-    pub const ALL: [LawName; 3] = [LawName::Hooke, LawName::MooneyRivlin, LawName::Skalak];
-
-    /// Its name in files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            LawName::Hooke => "hooke",
-            LawName::MooneyRivlin => "mooney-rivlin",
-            LawName::Skalak => "skalak",
-        }
-    }
-
-    /// The law of that name.
-    pub fn of(name: &str) -> Option<LawName> {
-        LawName::ALL.into_iter().find(|law| law.name() == name)
-    }
-
-    /// The material with these constants.
-    pub fn shell(self, p: &Parameters) -> Shell {
-        let law = match self {
-            LawName::Hooke => Law::Hooke,
-            LawName::MooneyRivlin => Law::MooneyRivlin { b: p[Key::MooneyB] },
-            LawName::Skalak => Law::Skalak,
-        };
-        Shell { law, poisson: p[Key::Poisson] }
     }
 }

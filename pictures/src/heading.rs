@@ -1,7 +1,7 @@
 //! Titles that say which shell or problem a picture shows.
 
 use study::case::{
-    Film, Law, PhysicalCase, ProblemCase, ResolvedCase, ShellCase, Stiffness, catalogue, shown,
+    Film, Law, PhysicalCase, ProblemCase, ResolvedCase, Shell, Stiffness, catalogue, shown,
 };
 
 /// A title with a second line below it: law and groups of a shell, in the units in which the case gives
@@ -22,7 +22,7 @@ pub fn titled(title: &str, case: &ResolvedCase) -> String {
                     ])
                 }
             };
-            let film = potential(&contact.groups.potential);
+            let film = potential(&contact.potential);
             format!("{}; {numbers}; {film}", law(contact.shell))
         }
         ProblemCase::TwoPlates(plates) => {
@@ -46,7 +46,10 @@ pub fn titled(title: &str, case: &ResolvedCase) -> String {
             format!("{}; {groups}{films}", law(plates.shell))
         }
         ProblemCase::RingLoad(ring) => {
-            let groups = listed(&[("k_{b}/(χR₀²)", ring.bending), ("P_{A}R₀/χ", ring.pressure)]);
+            let groups = listed(&[
+                ("k_{b}/(χR₀²)", ring.groups.bending),
+                ("P_{A}R₀/χ", ring.groups.pressure),
+            ]);
             format!("{}; {groups}", law(ring.shell))
         }
         ProblemCase::Catalogue(problem) => {
@@ -73,7 +76,7 @@ pub(crate) fn fit(title: &str) -> String {
     }
 }
 
-fn law(shell: ShellCase) -> String {
+fn law(shell: Shell) -> String {
     let name = match shell.law {
         Law::Hooke => "Hooke's law".to_owned(),
         Law::MooneyRivlin { b } => format!("Mooney-Rivlin's law, b = {}", number(b)),

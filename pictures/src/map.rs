@@ -7,7 +7,7 @@ use super::draw::{self, DISTANCE};
 use super::heading::titled;
 use super::palette::SEVERAL;
 use super::region;
-use study::case::{AxisScale, Law, ProblemCase, ResolvedCase};
+use study::case::{AxisScale, ProblemCase, ResolvedCase};
 use study::record::view::{Curve, Mark};
 use study::record::{Laboratory, MapResult, spoken};
 
@@ -140,15 +140,15 @@ fn value(case: &ResolvedCase, key: &str) -> Option<f64> {
             "surface_tension" => Some(contact.groups.surface_tension),
             "gas_exponent" => Some(contact.groups.gas_exponent),
             "poisson" => Some(contact.shell.poisson),
-            "b" => match contact.shell.law {
-                Law::MooneyRivlin { b } => Some(b),
-                Law::Hooke | Law::Skalak => None,
-            },
+            "b" => contact.shell.law.b(),
             _ => None,
         },
         ProblemCase::RingLoad(ring) => match key {
-            "bending" => Some(ring.bending),
-            "pressure" => Some(ring.pressure),
+            "bending" => Some(ring.groups.bending),
+            "pressure" => Some(ring.groups.pressure),
+            "gas_exponent" => Some(ring.groups.gas_exponent),
+            "poisson" => Some(ring.shell.poisson),
+            "b" => ring.shell.law.b(),
             _ => None,
         },
         ProblemCase::Catalogue(problem) => problem.parameters.get(key).copied(),

@@ -10,15 +10,15 @@
 use crate::ode::{Ode, System};
 use crate::visit::hand;
 use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
-use continuation::Parameter;
+use continuation::{Name, Parameter, names};
 
 /// See the module.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Ab;
 
 impl System<2> for Ab {
-    const UNKNOWNS: &'static [&'static str] = &["u", "v"];
-    const PARAMETERS: &'static [Parameter] = &[Parameter { name: "p", unit: "", scale: 0.1 }];
+    const UNKNOWNS: &'static [Name] = names!["u", "v"];
+    const PARAMETERS: &'static [Parameter] = &[Parameter::new("p", "", 0.1)];
 
     fn rates([u, v]: [f64; 2], p: &[f64]) -> [f64; 2] {
         let rate = p[0] * (1.0 - u) * v.exp();

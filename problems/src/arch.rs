@@ -23,7 +23,7 @@ use crate::grid::Grid;
 use crate::visit::hand;
 use crate::{Allowed, Constant, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
-use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
+use continuation::{EvalError, Matrix, Name, ParamId, Parameter, Problem, Stability, names};
 use std::f64::consts::PI;
 
 /// See the module. Parameters: load, rise, asymmetry of the load.
@@ -40,10 +40,10 @@ pub struct ShallowArch {
     bending: SymmetricBand,
 }
 
-const PARAMETERS: [Parameter; 3] = [
-    Parameter { name: "load", unit: "", scale: 5.0 },
-    Parameter { name: "rise", unit: "", scale: 1.0 },
-    Parameter { name: "asymmetry", unit: "", scale: 0.1 },
+static PARAMETERS: [Parameter; 3] = [
+    Parameter::new("load", "", 5.0),
+    Parameter::new("rise", "", 1.0),
+    Parameter::new("asymmetry", "", 0.1),
 ];
 
 impl ShallowArch {
@@ -172,8 +172,8 @@ impl Problem for ShallowArch {
     }
 
     /// The coefficients `b` of `sin x` and `a` of `sin 2x`, the height in the middle, the thrust.
-    fn observables(&self) -> &[&'static str] {
-        &["symmetric", "asymmetric", "crown", "thrust"]
+    fn observables(&self) -> &[Name] {
+        names!["symmetric", "asymmetric", "crown", "thrust"]
     }
 
     fn observe(&self, u: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

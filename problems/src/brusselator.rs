@@ -8,18 +8,16 @@
 use crate::ode::{Ode, System};
 use crate::visit::hand;
 use crate::{Allowed, Constant, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
-use continuation::Parameter;
+use continuation::{Name, Parameter, names};
 
 /// See the module.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Brusselator;
 
 impl System<2> for Brusselator {
-    const UNKNOWNS: &'static [&'static str] = &["x", "y"];
-    const PARAMETERS: &'static [Parameter] = &[
-        Parameter { name: "B", unit: "", scale: 1.0 },
-        Parameter { name: "A", unit: "", scale: 1.0 },
-    ];
+    const UNKNOWNS: &'static [Name] = names!["x", "y"];
+    const PARAMETERS: &'static [Parameter] =
+        &[Parameter::new("B", "", 1.0), Parameter::new("A", "", 1.0)];
 
     fn rates([x, y]: [f64; 2], p: &[f64]) -> [f64; 2] {
         [p[1] - (p[0] + 1.0) * x + x * x * y, p[0] * x - x * x * y]

@@ -10,7 +10,7 @@ use crate::grid::{Grid, diagonal};
 use crate::visit::hand;
 use crate::{Allowed, Constant, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
-use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability, Watch};
+use continuation::{EvalError, Matrix, Name, ParamId, Parameter, Problem, Stability, Watch, names};
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]
@@ -18,10 +18,8 @@ pub struct Chan {
     grid: Grid,
 }
 
-const PARAMETERS: [Parameter; 2] = [
-    Parameter { name: "alpha", unit: "", scale: 1.0 },
-    Parameter { name: "beta", unit: "", scale: 0.01 },
-];
+static PARAMETERS: [Parameter; 2] =
+    [Parameter::new("alpha", "", 1.0), Parameter::new("beta", "", 0.01)];
 
 impl Chan {
     /// With `nodes ≥ 3` nodes, the two ends included.
@@ -103,8 +101,8 @@ impl Problem for Chan {
         Stability::Dynamics
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &["max_u"]
+    fn observables(&self) -> &[Name] {
+        names!["max_u"]
     }
 
     /// The maximum is in the middle.

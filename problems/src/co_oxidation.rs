@@ -15,18 +15,16 @@
 use crate::ode::{Ode, System};
 use crate::visit::hand;
 use crate::{Allowed, Constant, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
-use continuation::{NewtonSettings, Parameter, newton};
+use continuation::{Name, NewtonSettings, Parameter, names, newton};
 
 /// See the module.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct CoOxidation;
 
 impl System<3> for CoOxidation {
-    const UNKNOWNS: &'static [&'static str] = &["x", "y", "s"];
-    const PARAMETERS: &'static [Parameter] = &[
-        Parameter { name: "p", unit: "", scale: 1.0 },
-        Parameter { name: "k", unit: "", scale: 0.4 },
-    ];
+    const UNKNOWNS: &'static [Name] = names!["x", "y", "s"];
+    const PARAMETERS: &'static [Parameter] =
+        &[Parameter::new("p", "", 1.0), Parameter::new("k", "", 0.4)];
 
     fn rates([x, y, s]: [f64; 3], p: &[f64]) -> [f64; 3] {
         let z = 1.0 - x - y - s;

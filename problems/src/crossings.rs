@@ -3,9 +3,9 @@
 use crate::ode::{Ode, System};
 use crate::visit::hand;
 use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
-use continuation::Parameter;
+use continuation::{Name, Parameter, names};
 
-const P: &[Parameter] = &[Parameter { name: "p", unit: "", scale: 1.0 }];
+const P: &[Parameter] = &[Parameter::new("p", "", 1.0)];
 
 /// `du/dt = (u − p)(u − 2)`: the branches `u = p` and `u = 2` cross at `p = 2` and exchange their
 /// stability.
@@ -13,7 +13,7 @@ const P: &[Parameter] = &[Parameter { name: "p", unit: "", scale: 1.0 }];
 pub struct Transcritical;
 
 impl System<1> for Transcritical {
-    const UNKNOWNS: &'static [&'static str] = &["u"];
+    const UNKNOWNS: &'static [Name] = names!["u"];
     const PARAMETERS: &'static [Parameter] = P;
 
     fn rates([u]: [f64; 1], p: &[f64]) -> [f64; 1] {
@@ -60,7 +60,7 @@ pub(crate) fn transcritical<V: Visitor>(
 pub struct Pitchfork;
 
 impl System<1> for Pitchfork {
-    const UNKNOWNS: &'static [&'static str] = &["x"];
+    const UNKNOWNS: &'static [Name] = names!["x"];
     const PARAMETERS: &'static [Parameter] = P;
 
     fn rates([x]: [f64; 1], p: &[f64]) -> [f64; 1] {

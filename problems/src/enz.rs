@@ -12,15 +12,15 @@
 use crate::ode::{Ode, System};
 use crate::visit::hand;
 use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
-use continuation::Parameter;
+use continuation::{Name, Parameter, names};
 
 /// See the module.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Enz;
 
 impl System<2> for Enz {
-    const UNKNOWNS: &'static [&'static str] = &["s1", "s2"];
-    const PARAMETERS: &'static [Parameter] = &[Parameter { name: "p", unit: "", scale: 10.0 }];
+    const UNKNOWNS: &'static [Name] = names!["s1", "s2"];
+    const PARAMETERS: &'static [Parameter] = &[Parameter::new("p", "", 10.0)];
 
     fn rates([a, b]: [f64; 2], p: &[f64]) -> [f64; 2] {
         let rate = |s: f64| 100.0 * s / (1.0 + s + s * s);

@@ -16,7 +16,7 @@ use crate::grid::Grid;
 use crate::visit::hand;
 use crate::{Allowed, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
-use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
+use continuation::{EvalError, Matrix, Name, ParamId, Parameter, Problem, Stability, names};
 use std::f64::consts::PI;
 
 /// See the module.
@@ -25,7 +25,7 @@ pub struct EulerColumn {
     grid: Grid,
 }
 
-const PARAMETERS: [Parameter; 1] = [Parameter { name: "lambda", unit: "EI/L^2", scale: 10.0 }];
+static PARAMETERS: [Parameter; 1] = [Parameter::new("lambda", "EI/L^2", 10.0)];
 
 impl EulerColumn {
     /// With `n ≥ 1` interior nodes.
@@ -106,8 +106,8 @@ impl Problem for EulerColumn {
 
     /// Rotation in the middle; how far the free end has come nearer, and has moved sideways, over
     /// the length; the norm of the rotation.
-    fn observables(&self) -> &[&'static str] {
-        &["rotation", "shortening", "sway", "norm"]
+    fn observables(&self) -> &[Name] {
+        names!["rotation", "shortening", "sway", "norm"]
     }
 
     fn observe(&self, u: &[f64], _p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

@@ -11,19 +11,19 @@
 use crate::ode::{Ode, System};
 use crate::visit::hand;
 use crate::{Allowed, Constant, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
-use continuation::Parameter;
+use continuation::{Name, Parameter, names};
 
 /// See the module.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FitzHughNagumo;
 
 impl System<2> for FitzHughNagumo {
-    const UNKNOWNS: &'static [&'static str] = &["v", "w"];
+    const UNKNOWNS: &'static [Name] = names!["v", "w"];
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter { name: "I", unit: "", scale: 1.0 },
-        Parameter { name: "epsilon", unit: "", scale: 0.1 },
-        Parameter { name: "a", unit: "", scale: 1.0 },
-        Parameter { name: "b", unit: "", scale: 1.0 },
+        Parameter::new("I", "", 1.0),
+        Parameter::new("epsilon", "", 0.1),
+        Parameter::new("a", "", 1.0),
+        Parameter::new("b", "", 1.0),
     ];
 
     fn rates([v, w]: [f64; 2], p: &[f64]) -> [f64; 2] {

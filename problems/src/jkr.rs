@@ -20,12 +20,12 @@
 use crate::visit::hand;
 use crate::{Allowed, Constant, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::{Dense, Matrix};
-use continuation::{EvalError, ParamId, Parameter, Problem, Stability, Watch};
+use continuation::{EvalError, Name, ParamId, Parameter, Problem, Stability, Watch, names};
 use std::f64::consts::PI;
 
-const MODULUS: Parameter = Parameter { name: "modulus", unit: "", scale: 1.0 };
-const RADIUS: Parameter = Parameter { name: "radius", unit: "", scale: 1.0 };
-const ADHESION: Parameter = Parameter { name: "adhesion", unit: "", scale: 1.0 };
+const MODULUS: Parameter = Parameter::new("modulus", "", 1.0);
+const RADIUS: Parameter = Parameter::new("radius", "", 1.0);
+const ADHESION: Parameter = Parameter::new("adhesion", "", 1.0);
 
 /// Approach and load of the contact in equilibrium with radius `a`; `law` = `[E*, R, w]`.
 pub fn equilibrium(a: f64, law: [f64; 3]) -> (f64, f64) {
@@ -104,8 +104,7 @@ impl Energy {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct LoadControl;
 
-const LOAD: [Parameter; 4] =
-    [Parameter { name: "load", unit: "", scale: 1.0 }, MODULUS, RADIUS, ADHESION];
+static LOAD: [Parameter; 4] = [Parameter::new("load", "", 1.0), MODULUS, RADIUS, ADHESION];
 
 fn energy(a: f64, approach: f64, p: &[f64]) -> Energy {
     Energy { a, approach, law: [p[1], p[2], p[3]] }
@@ -165,8 +164,8 @@ impl Problem for LoadControl {
         Stability::EnergyHessian
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &["contact_radius", "approach"]
+    fn observables(&self) -> &[Name] {
+        names!["contact_radius", "approach"]
     }
 
     fn observe(&self, u: &[f64], _p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
@@ -179,8 +178,7 @@ impl Problem for LoadControl {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct GripControl;
 
-const GRIP: [Parameter; 4] =
-    [Parameter { name: "approach", unit: "", scale: 1.0 }, MODULUS, RADIUS, ADHESION];
+static GRIP: [Parameter; 4] = [Parameter::new("approach", "", 1.0), MODULUS, RADIUS, ADHESION];
 
 impl Problem for GripControl {
     type Jacobian = Dense;
@@ -229,8 +227,8 @@ impl Problem for GripControl {
         Stability::EnergyHessian
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &["load", "contact_radius"]
+    fn observables(&self) -> &[Name] {
+        names!["load", "contact_radius"]
     }
 
     fn observe(&self, u: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

@@ -11,18 +11,18 @@
 use crate::ode::{Ode, System};
 use crate::visit::hand;
 use crate::{Allowed, Constant, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
-use continuation::Parameter;
+use continuation::{Name, Parameter, names};
 
 /// See the module.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Lorenz;
 
 impl System<3> for Lorenz {
-    const UNKNOWNS: &'static [&'static str] = &["x", "y", "z"];
+    const UNKNOWNS: &'static [Name] = names!["x", "y", "z"];
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter { name: "rho", unit: "", scale: 10.0 },
-        Parameter { name: "sigma", unit: "", scale: 10.0 },
-        Parameter { name: "beta", unit: "", scale: 1.0 },
+        Parameter::new("rho", "", 10.0),
+        Parameter::new("sigma", "", 10.0),
+        Parameter::new("beta", "", 1.0),
     ];
 
     fn rates([x, y, z]: [f64; 3], p: &[f64]) -> [f64; 3] {

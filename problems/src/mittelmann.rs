@@ -13,7 +13,7 @@
 use crate::visit::hand;
 use crate::{Allowed, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
-use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability, Watch};
+use continuation::{EvalError, Matrix, Name, ParamId, Parameter, Problem, Stability, Watch, names};
 use std::f64::consts::{E, PI};
 
 /// See the module.
@@ -23,7 +23,7 @@ pub struct Mittelmann {
     h: f64,
 }
 
-const PARAMETERS: [Parameter; 1] = [Parameter { name: "lambda", unit: "", scale: 0.4 }];
+static PARAMETERS: [Parameter; 1] = [Parameter::new("lambda", "", 0.4)];
 
 impl Mittelmann {
     /// With `n ≥ 2` cells along a side.
@@ -121,8 +121,8 @@ impl Problem for Mittelmann {
         Stability::Dynamics
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &["max_u", "mean_u"]
+    fn observables(&self) -> &[Name] {
+        names!["max_u", "mean_u"]
     }
 
     fn observe(&self, u: &[f64], _p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

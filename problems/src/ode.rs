@@ -1,12 +1,12 @@
 //! Small systems `du/dt = f(u, p)` with derivatives written out.
 
 use continuation::linalg::{Dense, Matrix};
-use continuation::{EvalError, ParamId, Parameter, Problem, Stability};
+use continuation::{EvalError, Name, ParamId, Parameter, Problem, Stability};
 
 /// `N` rates of change and their derivatives.
-pub trait System<const N: usize> {
+pub trait System<const N: usize>: Send + Sync {
     /// Names of the unknowns, which are the observables too.
-    const UNKNOWNS: &'static [&'static str];
+    const UNKNOWNS: &'static [Name];
     /// The parameters.
     const PARAMETERS: &'static [Parameter];
     /// `f(u, p)`.
@@ -77,7 +77,7 @@ impl<S: System<N>, const N: usize> Problem for Ode<S, N> {
         Stability::Dynamics
     }
 
-    fn observables(&self) -> &[&'static str] {
+    fn observables(&self) -> &[Name] {
         S::UNKNOWNS
     }
 

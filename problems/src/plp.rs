@@ -9,7 +9,7 @@
 use crate::ode::{Ode, System};
 use crate::visit::hand;
 use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
-use continuation::Parameter;
+use continuation::{Name, Parameter, names};
 
 /// See the module.
 #[derive(Debug, Clone, Copy, Default)]
@@ -22,8 +22,8 @@ fn reaction(s: f64, a: f64) -> [f64; 3] {
 }
 
 impl System<2> for Plp {
-    const UNKNOWNS: &'static [&'static str] = &["s", "a"];
-    const PARAMETERS: &'static [Parameter] = &[Parameter { name: "p", unit: "", scale: 1.0 }];
+    const UNKNOWNS: &'static [Name] = names!["s", "a"];
+    const PARAMETERS: &'static [Parameter] = &[Parameter::new("p", "", 1.0)];
 
     fn rates([s, a]: [f64; 2], p: &[f64]) -> [f64; 2] {
         let rate = p[0] * reaction(s, a)[0];

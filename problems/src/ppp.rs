@@ -12,21 +12,21 @@
 use crate::ode::{Ode, System};
 use crate::visit::hand;
 use crate::{Allowed, Constant, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
-use continuation::Parameter;
+use continuation::{Name, Parameter, names};
 
 /// See the module.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Ppp;
 
 impl System<3> for Ppp {
-    const UNKNOWNS: &'static [&'static str] = &["u1", "u2", "u3"];
+    const UNKNOWNS: &'static [Name] = names!["u1", "u2", "u3"];
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter { name: "p1", unit: "", scale: 1.0 },
-        Parameter { name: "p2", unit: "", scale: 1.0 },
-        Parameter { name: "p3", unit: "", scale: 1.0 },
-        Parameter { name: "p4", unit: "", scale: 1.0 },
-        Parameter { name: "p5", unit: "", scale: 1.0 },
-        Parameter { name: "p6", unit: "", scale: 1.0 },
+        Parameter::new("p1", "", 1.0),
+        Parameter::new("p2", "", 1.0),
+        Parameter::new("p3", "", 1.0),
+        Parameter::new("p4", "", 1.0),
+        Parameter::new("p5", "", 1.0),
+        Parameter::new("p6", "", 1.0),
     ];
 
     fn rates([u, v, w]: [f64; 3], p: &[f64]) -> [f64; 3] {

@@ -24,7 +24,7 @@
 use crate::visit::hand;
 use crate::{Allowed, Constant, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::{Dense, Matrix};
-use continuation::{EvalError, ParamId, Parameter, Problem, Stability};
+use continuation::{EvalError, Name, ParamId, Parameter, Problem, Stability, names};
 use shell_contact::density::{self, Coefficients, Hessian, Site};
 use shell_contact::film::FourTwo;
 use shell_contact::membrane::Hooke;
@@ -132,8 +132,8 @@ impl PressurisedSphere {
             }
         }
         let parameters = [
-            Parameter { name: "pressure", unit: "chi/R0", scale: 0.1 },
-            Parameter { name: "bending", unit: "chi R0^2", scale: 1e-3 },
+            Parameter::new("pressure", "chi/R0", 0.1),
+            Parameter::new("bending", "chi R0^2", 1e-3),
         ];
         PressurisedSphere { dim: 2 * count - 1, poisson, parameters, points, basis }
     }
@@ -284,8 +284,8 @@ impl Problem for PressurisedSphere {
 
     /// Radial displacement of the pole, outwards; volume of the sphere over that at rest; length
     /// of the displacement without its uniform part.
-    fn observables(&self) -> &[&'static str] {
-        &["pole", "volume", "buckling"]
+    fn observables(&self) -> &[Name] {
+        names!["pole", "volume", "buckling"]
     }
 
     fn observe(&self, u: &[f64], _p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

@@ -10,19 +10,16 @@
 use crate::ode::{Ode, System};
 use crate::visit::hand;
 use crate::{Allowed, Constant, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
-use continuation::Parameter;
+use continuation::{Name, Parameter, names};
 
 /// See the module.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Roessler;
 
 impl System<3> for Roessler {
-    const UNKNOWNS: &'static [&'static str] = &["x", "y", "z"];
-    const PARAMETERS: &'static [Parameter] = &[
-        Parameter { name: "a", unit: "", scale: 0.1 },
-        Parameter { name: "b", unit: "", scale: 1.0 },
-        Parameter { name: "c", unit: "", scale: 1.0 },
-    ];
+    const UNKNOWNS: &'static [Name] = names!["x", "y", "z"];
+    const PARAMETERS: &'static [Parameter] =
+        &[Parameter::new("a", "", 0.1), Parameter::new("b", "", 1.0), Parameter::new("c", "", 1.0)];
 
     fn rates([x, y, z]: [f64; 3], p: &[f64]) -> [f64; 3] {
         [-y - z, x + p[0] * y, p[1] + z * (x - p[2])]

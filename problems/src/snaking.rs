@@ -17,7 +17,7 @@
 use crate::visit::hand;
 use crate::{Allowed, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
-use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability, Watch};
+use continuation::{EvalError, Matrix, Name, ParamId, Parameter, Problem, Stability, Watch, names};
 use std::f64::consts::PI;
 
 /// Half width `M` of the difference formula.
@@ -35,7 +35,7 @@ pub struct Snaking {
     operator: SymmetricBand,
 }
 
-const PARAMETERS: [Parameter; 1] = [Parameter { name: "r", unit: "", scale: 0.1 }];
+static PARAMETERS: [Parameter; 1] = [Parameter::new("r", "", 0.1)];
 
 /// `1 + ∂²` by central differences of order `2M`: the middle coefficient and those to either side,
 /// `2(−1)^{k+1}(M!)²/(k²(M − k)!(M + k)!h²)`.
@@ -179,8 +179,8 @@ impl Problem for Snaking {
     }
 
     /// `√∫u²`, and `u` in the middle of the pattern, `x = 0`.
-    fn observables(&self) -> &[&'static str] {
-        &["norm", "u_0"]
+    fn observables(&self) -> &[Name] {
+        names!["norm", "u_0"]
     }
 
     fn observe(&self, u: &[f64], _p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

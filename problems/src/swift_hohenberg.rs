@@ -19,7 +19,7 @@ use crate::grid::Grid;
 use crate::visit::hand;
 use crate::{Allowed, Elements, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
 use continuation::linalg::SymmetricBand;
-use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
+use continuation::{EvalError, Matrix, Name, ParamId, Parameter, Problem, Stability, names};
 use std::f64::consts::PI;
 
 /// Length of the interval.
@@ -31,7 +31,7 @@ pub struct SwiftHohenberg {
     grid: Grid,
 }
 
-const PARAMETERS: [Parameter; 1] = [Parameter { name: "lambda", unit: "", scale: 1.0 }];
+static PARAMETERS: [Parameter; 1] = [Parameter::new("lambda", "", 1.0)];
 
 /// Number of unknowns per node; `v` comes first, `u` second.
 const PER_NODE: usize = 2;
@@ -132,8 +132,8 @@ impl Problem for SwiftHohenberg {
         self.grid.n
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &["norm", "max_u"]
+    fn observables(&self) -> &[Name] {
+        names!["norm", "max_u"]
     }
 
     fn observe(&self, x: &[f64], _p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

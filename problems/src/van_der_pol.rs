@@ -10,15 +10,15 @@
 use crate::ode::{Ode, System};
 use crate::visit::hand;
 use crate::{Allowed, Entry, Id, Known, ProblemError, Request, Setup, Visitor};
-use continuation::Parameter;
+use continuation::{Name, Parameter, names};
 
 /// See the module.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct VanDerPol;
 
 impl System<2> for VanDerPol {
-    const UNKNOWNS: &'static [&'static str] = &["u", "v"];
-    const PARAMETERS: &'static [Parameter] = &[Parameter { name: "mu", unit: "", scale: 1.0 }];
+    const UNKNOWNS: &'static [Name] = names!["u", "v"];
+    const PARAMETERS: &'static [Parameter] = &[Parameter::new("mu", "", 1.0)];
 
     fn rates([u, v]: [f64; 2], p: &[f64]) -> [f64; 2] {
         [v, (p[0] - u * u) * v - u]

@@ -18,7 +18,7 @@
 //! ```
 
 use crate::{Entry, Id, ProblemError, Request};
-use continuation::{Branch, Matrix, Problem, Progress, Settings, TraceError, Tracer, Watch};
+use continuation::{Branch, Matrix, Name, Problem, Progress, Settings, TraceError, Tracer, Watch};
 use std::ops::ControlFlow;
 
 /// What is done with a problem of the catalogue.
@@ -43,7 +43,7 @@ pub(crate) fn hand<V: Visitor, J: Matrix>(
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setup {
     /// The continued parameter.
-    pub parameter: &'static str,
+    pub parameter: Name,
     /// The unknowns at the start, or near them.
     pub u: Vec<f64>,
     /// All parameters at the start.
@@ -59,6 +59,7 @@ impl Setup {
     pub(crate) fn new(parameter: &'static str, u: Vec<f64>, request: &Request) -> Setup {
         let mut p = vec![request.start];
         p.extend_from_slice(&request.parameters);
+        let parameter = Name::Borrowed(parameter);
         Setup { parameter, u, p, settings: request.settings.clone(), watches: Vec::new() }
     }
 
@@ -83,7 +84,7 @@ impl Visitor for Trace<'_, '_> {
     type Output = Result<Branch, TraceError>;
 
     fn visit<P: Problem>(self, problem: &P, setup: Setup) -> Self::Output {
-        let tracer = Tracer::new(problem, setup.parameter, &setup.u, &setup.p, setup.settings)?;
+        let tracer = Tracer::new(problem, &setup.parameter, &setup.u, &setup.p, setup.settings)?;
         Ok(tracer.watching(&setup.watches)?.run(self.0))
     }
 }

@@ -49,7 +49,7 @@ impl Visitor for Certify {
 
     fn visit<P: Problem>(self, problem: &P, setup: Setup) {
         let n = problem.dim();
-        let names: Vec<&str> = problem.parameters().iter().map(|p| p.name).collect();
+        let names: Vec<&str> = problem.parameters().iter().map(|p| &p.name[..]).collect();
         assert_eq!((setup.u.len(), setup.p.len()), (n, names.len()), "{}", self.0);
         let size = 1.0 + largest(&setup.u);
         for (state, shift) in [0.0, 0.01, 0.03].into_iter().enumerate() {

@@ -19,7 +19,7 @@ fn explore<P: Problem>(
     p: &[f64],
     domain: (f64, f64),
 ) -> (Vec<NearBifurcation>, Vec<Branch>) {
-    let name = problem.parameters()[0].name;
+    let name = &problem.parameters()[0].name;
     let mut go_on = |_: &_| ControlFlow::Continue(());
     let settings = Settings { domain: Some(domain), ..Settings::default() };
     let search = DeflationSettings::default();
@@ -116,7 +116,7 @@ fn the_arch_that_snaps_the_other_way() {
             || found.iter().any(|start| {
                 let (u, p, settings) = (&start.u, &start.p, settings.clone());
                 let mut go_on = |_: &_| ControlFlow::Continue(());
-                let name = problem.parameters()[0].name;
+                let name = &problem.parameters()[0].name;
                 let branch = both_ways(&problem, name, u, p, settings, &[], &mut go_on).unwrap();
                 passes(&branch) == 1
             });

@@ -19,7 +19,7 @@ impl Visitor for Cycles {
         let trace = Settings { domain: Some(self.domain), ..setup.settings.clone() };
         let settings =
             DiagramSettings { trace: setup.settings, search: None, ..Default::default() };
-        let (name, u, p) = (setup.parameter, &setup.u, &setup.p);
+        let (name, u, p) = (&setup.parameter, &setup.u, &setup.p);
         let mut explorer = Explorer::new(problem, name, u, p, settings, &setup.watches).unwrap();
         while explorer.next_branch(&mut |_| ControlFlow::Continue(())).unwrap().is_some() {}
         let equilibria: Vec<Branch> =

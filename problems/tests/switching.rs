@@ -18,7 +18,7 @@ impl Visitor for Explore {
     fn visit<P: Problem>(self, problem: &P, setup: Setup) -> Vec<Branch> {
         let run = |tracer: Tracer<'_>| tracer.run(&mut |_| ControlFlow::Continue(()));
         let Setup { parameter, u, p, settings, watches } = setup;
-        let first = Tracer::new(problem, parameter, &u, &p, settings).unwrap();
+        let first = Tracer::new(problem, &parameter, &u, &p, settings).unwrap();
         let mut all = vec![run(first.watching(&watches).unwrap())];
         let mut done = 0;
         for _ in 0..self.depth {

@@ -103,7 +103,7 @@ impl problems::Visitor for Names {
 
     fn visit<P: continuation::Problem>(self, problem: &P, setup: problems::Setup) -> Vec<String> {
         let observables = problem.observables().iter().map(ToString::to_string);
-        std::iter::once(setup.parameter.to_owned()).chain(observables).collect()
+        std::iter::once(setup.parameter.to_string()).chain(observables).collect()
     }
 }
 

@@ -8,8 +8,8 @@ use numpy::{
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use std::cell::{Cell, RefCell};
-use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 pyo3::create_exception!(
     _arclen,
@@ -24,29 +24,29 @@ pub(crate) struct Callbacks {
     /// Calls `jac` and gives a dense array, or the data, rows and column starts of a sparse one.
     pub(crate) jac: Option<Py<PyAny>>,
     pub(crate) slope: Option<Py<PyAny>>,
-    pub(crate) observe: Vec<(&'static str, Py<PyAny>)>,
+    pub(crate) observe: Vec<(String, Py<PyAny>)>,
 }
 
 /// Calls from one computation. The first exception ends it: every later call is refused.
 pub(crate) struct Calls {
     callbacks: Arc<Callbacks>,
-    failure: RefCell<Option<PyErr>>,
-    aborted: Cell<bool>,
+    failure: Mutex<Option<PyErr>>,
+    aborted: AtomicBool,
 }
 
 impl Calls {
     pub(crate) fn new(callbacks: Arc<Callbacks>) -> Self {
-        Calls { callbacks, failure: RefCell::new(None), aborted: Cell::new(false) }
+        Calls { callbacks, failure: Mutex::default(), aborted: AtomicBool::new(false) }
     }
 
     /// Whether a call has ended the computation.
     pub(crate) fn is_aborted(&self) -> bool {
-        self.aborted.get()
+        self.aborted.load(Ordering::Acquire)
     }
 
     /// The exception that ended the computation.
     pub(crate) fn take_failure(&self) -> Option<PyErr> {
-        self.failure.borrow_mut().take()
+        self.failure.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
     /// Does something with the interpreter; an exception ends the computation.
@@ -54,7 +54,7 @@ impl Calls {
         &self,
         work: impl FnOnce(Python<'_>, &Callbacks) -> PyResult<T>,
     ) -> Result<T, EvalError> {
-        if self.aborted.get() {
+        if self.is_aborted() {
             return Err(EvalError::Aborted);
         }
         let done = Python::attach(|py| {
@@ -63,8 +63,8 @@ impl Calls {
             work(py, &self.callbacks)
         });
         done.map_err(|error| {
-            self.aborted.set(true);
-            *self.failure.borrow_mut() = Some(error);
+            self.failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+            self.aborted.store(true, Ordering::Release);
             EvalError::Aborted
         })
     }

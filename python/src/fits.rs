@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use study::fit::files::{files, fit_json, summary};
 use study::fit::lab::{self, Lab, Wishes};
 use study::fit::plan::planned;
-use study::fit::{self, Failure, Laws, Outcome};
+use study::fit::{self, Fault, Laws, Outcome};
 
 /// What is asked of a fit, in the words of the program's options.
 #[derive(Clone, FromPyObject)]
@@ -52,7 +52,7 @@ impl Asked {
 }
 
 fn laboratory(known: Option<&PathBuf>, keys: Vec<String>) -> PyResult<Lab> {
-    lab::load(known.map(PathBuf::as_path), &given(keys))
+    lab::load(known.map(PathBuf::as_path), "known", &given(keys))
         .map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
@@ -135,7 +135,8 @@ pub(crate) fn fit_curve<'py>(
             }
         },
     };
-    let profiles = fit::profiles(profile).map_err(PyValueError::new_err)?;
+    let profiles =
+        fit::profiles(profile).map_err(|error| PyValueError::new_err(error.to_string()))?;
     let source = fit::Source { path: curve.0, number: curve.1 };
     let waiting =
         Arc::new(Waiting { progress, stop: AtomicBool::new(false), failure: Mutex::new(None) });
@@ -154,10 +155,10 @@ pub(crate) fn fit_curve<'py>(
     let failure = waiting.failure();
     match found {
         Ok(outcome) => Ok((Some(record(py, &outcome)?), None, failure)),
-        Err(Failure::Input(message)) => Err(PyValueError::new_err(message)),
-        Err(Failure::NotFound(message) | Failure::Stopped(message)) => {
-            Ok((None, Some(message), failure))
+        Err(error) if error.fault() == Fault::Input => {
+            Err(PyValueError::new_err(error.to_string()))
         }
+        Err(error) => Ok((None, Some(error.to_string()), failure)),
     }
 }
 
@@ -208,6 +209,7 @@ pub(crate) fn plan_measurement(
     let lab = laboratory(known.as_ref(), keys)?;
     let case = case.case.clone();
     let work = move || planned(&case, &lab, asked.wishes());
-    let plan = attended(py, work, Some)?.map_err(PyValueError::new_err)?;
+    let plan =
+        attended(py, work, Some)?.map_err(|error| PyValueError::new_err(error.to_string()))?;
     Ok((json(plan.json())?, plan.summary()))
 }

@@ -11,7 +11,6 @@ mod command;
 mod engine;
 mod figures;
 mod fits;
-mod names;
 mod orbits;
 mod problem;
 mod storage;
@@ -22,7 +21,6 @@ use branch::RawBranch;
 use callbacks::{Callbacks, OutsidePattern};
 use continuation::{Parameter, Stability};
 use engine::{Engine, EngineError};
-use names::intern;
 use numpy::PyReadonlyArray1;
 use problem::Spec;
 use pyo3::exceptions::{PyMemoryError, PyValueError};
@@ -103,19 +101,13 @@ fn make_engine(
         return Err(PyValueError::new_err(format!("the metric needs {n} weights")));
     }
     let parameters = parameters
-        .iter()
-        .map(|(name, unit, scale)| Parameter {
-            name: intern(name),
-            unit: intern(unit),
-            scale: *scale,
-        })
+        .into_iter()
+        .map(|(name, unit, scale)| Parameter::named(name, unit, scale))
         .collect();
-    let observe: Vec<(&'static str, Py<PyAny>)> =
-        observe.into_iter().map(|(name, function)| (intern(&name), function)).collect();
     Ok(Engine {
         spec: Spec {
             parameters,
-            observables: observe.iter().map(|(name, _)| *name).collect(),
+            observables: observe.iter().map(|(name, _)| name.clone().into()).collect(),
             stability,
             empty,
             mass,

@@ -4,10 +4,9 @@ use crate::callbacks::{Callbacks, Calls};
 use crate::storage::{Storage, assign};
 use continuation::linalg::Matrix;
 use continuation::{
-    BandProblem, BoxedResidual, DenseProblem, EvalError, ParamId, Parameter, Problem,
+    BandProblem, BoxedResidual, DenseProblem, EvalError, Name, ParamId, Parameter, Problem,
     SparseProblem, Stability,
 };
-use std::rc::Rc;
 use std::sync::Arc;
 
 /// Where the parameter is moved to see whether the residual is affine in it, in units of a step: no
@@ -17,7 +16,7 @@ const AFFINE: [f64; 5] = [0.0, -1.0, 1.0, 0.381_966, -0.618_034];
 /// What a problem is made of; shared by all computations with it.
 pub(crate) struct Spec {
     pub(crate) parameters: Vec<Parameter>,
-    pub(crate) observables: Vec<&'static str>,
+    pub(crate) observables: Vec<Name>,
     pub(crate) stability: Stability,
     pub(crate) empty: Storage,
     /// Entries of the mass matrix, if it is not the identity.
@@ -35,10 +34,10 @@ enum Differences {
 }
 
 impl Differences {
-    fn new(spec: &Spec, calls: &Rc<Calls>) -> Result<Self, EvalError> {
+    fn new(spec: &Spec, calls: &Arc<Calls>) -> Result<Self, EvalError> {
         let n = spec.empty.dim();
-        let names: Vec<&'static str> = spec.parameters.iter().map(|one| one.name).collect();
-        let calls = Rc::clone(calls);
+        let names: Vec<Name> = spec.parameters.iter().map(|one| one.name.clone()).collect();
+        let calls = Arc::clone(calls);
         let f: BoxedResidual = Box::new(move |u: &[f64], p: &[f64], r: &mut [f64]| {
             if calls.residual(u, p, r).is_err() {
                 r.fill(f64::NAN);
@@ -94,13 +93,13 @@ macro_rules! each {
 /// A problem during one computation, on one thread.
 pub(crate) struct UserProblem<'s> {
     spec: &'s Spec,
-    pub(crate) calls: Rc<Calls>,
+    pub(crate) calls: Arc<Calls>,
     differences: Differences,
 }
 
 impl<'s> UserProblem<'s> {
     pub(crate) fn new(spec: &'s Spec) -> Result<Self, EvalError> {
-        let calls = Rc::new(Calls::new(Arc::clone(&spec.callbacks)));
+        let calls = Arc::new(Calls::new(Arc::clone(&spec.callbacks)));
         let differences = Differences::new(spec, &calls)?;
         Ok(UserProblem { spec, calls, differences })
     }
@@ -248,7 +247,7 @@ impl Problem for UserProblem<'_> {
         true
     }
 
-    fn observables(&self) -> &[&'static str] {
+    fn observables(&self) -> &[Name] {
         &self.spec.observables
     }
 

@@ -48,12 +48,45 @@ pub(crate) fn energy(
     b: &[f64],
     p: [H; parameter::COUNT],
 ) -> H {
-    let mesh = problem.mesh();
     let [plate, adhesion, kb, ambient, length, tension, exponent, nu, share] = p;
+    let material = Material { law: problem.shell.law, kb, nu, share };
+    let film = |z: H| problem.potential.energy(plate - z, adhesion, length) + tension;
+    let rest = Rest { ambient, tension, exponent };
+    energy_on(problem.mesh(), (u, a, b), material, rest, film)
+}
+
+/// The constants of a shell as dual numbers.
+#[derive(Clone, Copy)]
+pub(crate) struct Material {
+    pub(crate) law: Law,
+    pub(crate) kb: H,
+    pub(crate) nu: H,
+    pub(crate) share: H,
+}
+
+/// The gas at rest.
+#[derive(Clone, Copy)]
+pub(crate) struct Rest {
+    pub(crate) ambient: H,
+    pub(crate) tension: H,
+    pub(crate) exponent: H,
+}
+
+/// The energy of shell, gas and of `surface` per deformed area, at `u + ε1 a + ε2 b`.
+pub(crate) fn energy_on(
+    mesh: &Mesh,
+    (u, a, b): (&[f64], &[f64], &[f64]),
+    Material { law, kb, nu, share }: Material,
+    Rest { ambient, tension, exponent }: Rest,
+    surface: impl Fn(H) -> H,
+) -> H {
     let mut total = real(0.0);
     let mut volume = real(0.0);
     for e in 0..mesh.elements() {
         let (start, width) = (mesh.knots().at(e), mesh.knots().at(e + 1) - mesh.knots().at(e));
+        if width == 0.0 {
+            continue; // between the knots of a double one
+        }
         for (x, weight) in gauss_legendre(mesh.gauss_points()) {
             let s = start + width * x;
             let weight = weight * width;
@@ -65,11 +98,10 @@ pub(crate) fn energy(
             let (z, z1, z2) = (w(0) + cos, w(1) - sin, w(2) - cos);
             let q = r1 * r1 + z1 * z1;
             let hoop = r * (1.0 / sin);
-            let membrane = membrane::check::energy(problem.shell.law, [q, hoop * hoop], nu, share);
+            let membrane = membrane::check::energy(law, [q, hoop * hoop], nu, share);
             let (ks, kphi) = bending::strains(r1, r2, z1, z2, real(1.0 / sin));
             let bend = kb * (ks * ks + nu * ks * kphi * 2.0 + kphi * kphi) * 0.5;
-            let film = problem.potential.energy(plate - z, adhesion, length);
-            total += (membrane + bend) * (weight * sin) + (film + tension) * r * q.sqrt() * weight;
+            total += (membrane + bend) * (weight * sin) + surface(z) * r * q.sqrt() * weight;
             volume += -(r * r * z1) * (0.5 * weight);
         }
     }

@@ -15,7 +15,7 @@ use crate::params::{Dimensionless, Law, ParameterError, Shell};
 use crate::plate::{self, Variable};
 use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::SymmetricBand;
-use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
+use continuation::{EvalError, Matrix, Name, ParamId, Parameter, Problem, Stability};
 use std::f64::consts::PI;
 
 /// Indices of the parameters in `p`.
@@ -66,7 +66,7 @@ pub(crate) fn constant(which: ParamId) -> Option<Constant> {
 /// The parameters of gas and material, which problems with plates have in common; `b` is the last, and
 /// is there for a law that has it.
 pub(crate) fn gas_and_material(law: Law) -> impl Iterator<Item = Parameter> {
-    let parameter = |name, scale| Parameter { name, unit: "", scale };
+    let parameter = |name, scale| Parameter::new(name, "", scale);
     let b = law.b().map(|_| parameter("b", 1.0));
     [parameter("gas_exponent", 1.0), parameter("poisson", 0.5)].into_iter().chain(b)
 }
@@ -140,7 +140,7 @@ impl ContactProblem {
         shell.validate()?;
         groups.validate()?;
         let scale = |value: f64, otherwise: f64| if value > 0.0 { value } else { otherwise };
-        let parameter = |name, unit, scale| Parameter { name, unit, scale };
+        let parameter = Parameter::new;
         let own = [
             parameter("z0", "R0", 1.0),
             parameter("adhesion", "chi", scale(groups.adhesion, 1e-3)),
@@ -360,8 +360,8 @@ impl Problem for ContactProblem {
         Stability::EnergyHessian
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &observables::NAMES
+    fn observables(&self) -> &[Name] {
+        &observables::OBSERVABLES
     }
 
     fn observe(&self, u: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

@@ -61,7 +61,8 @@ pub use device::{Device, LoadedProblem};
 pub use meridian::Mesh;
 pub use observables::{Observation, Profile};
 pub use params::{
-    Dimensionless, Law, ParameterError, Physical, Scales, Shell, Stiffness, default_gas_exponent,
+    Dimensionless, Law, LawName, ParameterError, Physical, Scales, Shell, Stiffness,
+    default_gas_exponent,
 };
 pub use resolution::Resolution;
 pub use ring_load::{RingGroups, RingLoadProblem};

@@ -11,7 +11,7 @@ use crate::film::Potential;
 use crate::half::HalfMeridian;
 use crate::membrane::tensions;
 use crate::plate;
-use continuation::EvalError;
+use continuation::{EvalError, Name, literals};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Names of the observables, in the order of [`Observation::to_array`].
@@ -28,6 +28,9 @@ pub const NAMES: [&str; 11] = [
     "energy_surface",
     "contact_radius",
 ];
+
+/// The same, as a problem gives them.
+pub(crate) static OBSERVABLES: [Name; NAMES.len()] = literals(NAMES);
 
 /// What is reported of a state.
 #[derive(Debug, Clone, Copy, PartialEq)]

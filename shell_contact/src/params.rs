@@ -4,6 +4,7 @@
 //! the two-dimensional Young modulus), energies in `χR0²`, pressures in `χ/R0`, Eq. (21).
 
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// What is wrong with a parameter, where, and what would be right.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -105,11 +106,69 @@ pub enum Law {
 }
 
 impl Law {
+    /// Which law it is.
+    pub fn name(self) -> LawName {
+        match self {
+            Law::Hooke => LawName::Hooke,
+            Law::MooneyRivlin { .. } => LawName::MooneyRivlin,
+            Law::Skalak => LawName::Skalak,
+        }
+    }
+
     /// The share `b`, of the law that has one.
     pub fn b(self) -> Option<f64> {
         match self {
             Law::MooneyRivlin { b } => Some(b),
             Law::Hooke | Law::Skalak => None,
+        }
+    }
+}
+
+impl fmt::Display for Law {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name().name())
+    }
+}
+
+/// The laws without their constants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LawName {
+    /// Hooke's, Eq. (6a).
+    Hooke,
+    /// Mooney and Rivlin's, Eq. (6b).
+    MooneyRivlin,
+    /// Skalak's.
+    Skalak,
+}
+
+impl LawName {
+    /// All of them.
+    pub const ALL: [LawName; 3] = [LawName::Hooke, LawName::MooneyRivlin, LawName::Skalak];
+    /// Their names.
+    pub const NAMES: [&'static str; 3] =
+        [LawName::Hooke.name(), LawName::MooneyRivlin.name(), LawName::Skalak.name()];
+
+    /// Its name in files and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            LawName::Hooke => "hooke",
+            LawName::MooneyRivlin => "mooney-rivlin",
+            LawName::Skalak => "skalak",
+        }
+    }
+
+    /// The law of that name.
+    pub fn of(name: &str) -> Option<LawName> {
+        LawName::ALL.into_iter().find(|law| law.name() == name)
+    }
+
+    /// The law with this share `b`, which only Mooney and Rivlin's has.
+    pub fn with_b(self, b: f64) -> Law {
+        match self {
+            LawName::Hooke => Law::Hooke,
+            LawName::MooneyRivlin => Law::MooneyRivlin { b },
+            LawName::Skalak => Law::Skalak,
         }
     }
 }
@@ -284,18 +343,30 @@ impl Physical {
         positive("film", self.film, "the film length in metres")?;
         not_negative("surface_tension", self.surface_tension, "in newton per metre")?;
         not_negative("gas_exponent", self.gas_exponent, "1.07 in the paper")?;
+        let groups = self.groups(poisson);
+        groups.validate()?;
+        Ok((groups, self.scales(poisson)))
+    }
+
+    /// The dimensionless groups of Eq. (21), whatever the numbers are: lengths in `R0`, tensions in `χ`, pressures in
+    /// `χ/R0`.
+    pub fn groups(&self, poisson: f64) -> Dimensionless {
         let (chi, bending) = self.moduli(poisson);
         let radius = self.radius;
-        let groups = Dimensionless {
+        Dimensionless {
             bending: bending / (chi * radius * radius),
             pressure: self.pressure * radius / chi,
             adhesion: self.adhesion / chi,
             film: self.film / radius,
             surface_tension: self.surface_tension / chi,
             gas_exponent: self.gas_exponent,
-        };
-        groups.validate()?;
-        Ok((groups, Scales { length: radius, tension: chi, bending }))
+        }
+    }
+
+    /// What leads back from them.
+    pub fn scales(&self, poisson: f64) -> Scales {
+        let (tension, bending) = self.moduli(poisson);
+        Scales { length: self.radius, tension, bending }
     }
 }
 

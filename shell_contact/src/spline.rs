@@ -31,6 +31,9 @@ pub type Basis = [[f64; 4]; 4];
 /// `t(−2), …, t(3)`, and three derivatives, at `s`.
 pub(crate) fn basis_over<T: Scalar>(t: impl Fn(isize) -> T, s: T) -> [[T; 4]; 4] {
     let zero = T::constant(0.0);
+    // each of t_{e-2}, …, t_{e+3} is read several times
+    let near: [T; 6] = std::array::from_fn(|i| t(i as isize - 2));
+    let t = |k: isize| near[(k + 2) as usize];
     // de Boor's triangle: degree d functions on t_{e-d}.., four entries at most
     let mut triangle = [[zero; 4]; 4];
     triangle[0][0] = T::constant(1.0);

@@ -130,7 +130,7 @@ fn approach<P: Problem>(problem: &P, x: &mut [f64], p: &[f64]) {
     let mut start = p.to_vec();
     start[0] = 1.15;
     let settings = Settings { target: Some(p[0]), max_step: Some(0.01), ..Settings::default() };
-    let name = problem.parameters()[0].name;
+    let name = &problem.parameters()[0].name;
     let tracer = Tracer::new(problem, name, x, &start, settings).unwrap();
     let branch = tracer.run(&mut |_| ControlFlow::Continue(()));
     assert_eq!(branch.stopped.reason, StopReason::Target, "{:?}", branch.stopped);

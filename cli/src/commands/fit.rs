@@ -16,7 +16,7 @@ use study::case::{Override, PictureCase, catalogue, load};
 use study::fit::files::summary;
 use study::fit::lab::{self, Lab, Wishes};
 use study::fit::plan::{PLAN, planned};
-use study::fit::{Failure, Laws, Outcome, Source, fit_file, profiles, sources};
+use study::fit::{Failure, Fault, Laws, Outcome, Source, fit_file, profiles, sources};
 
 /// Fit the curves.
 pub(super) fn fit(arguments: &FitArguments, listen: &Listen<'_>) -> Done {
@@ -55,7 +55,8 @@ fn plan(arguments: &FitArguments, case: &PathBuf, lab: &Lab, wishes: Wishes<'_>)
     let loaded = load(case, &[], &catalogue()).map_err(|error| super::refuse(&error.advised()))?;
     let inputs: Vec<PathBuf> = std::iter::once(case).chain(&arguments.known).cloned().collect();
     let folder = arguments.output.folder(&loaded.case.name, &[PLAN], &inputs)?;
-    let plan = planned(&loaded.case, lab, wishes).map_err(|message| super::refuse(&message))?;
+    let plan =
+        planned(&loaded.case, lab, wishes).map_err(|error| super::refuse(&error.advised()))?;
     let words = |_: Option<&Path>| plan.summary();
     arguments.output.deliver(folder.as_ref(), results::plan(&plan), &inputs, words, true)
 }
@@ -77,7 +78,8 @@ fn wishes(arguments: &FitArguments) -> Wishes<'_> {
 
 fn prepare(arguments: &FitArguments) -> Result<(Lab, Laws, Profiles), String> {
     let overrides: Vec<Override> = set(&arguments.set).collect();
-    let lab = lab::load(arguments.known.as_deref(), &overrides).map_err(|error| error.advised())?;
+    let lab = lab::load(arguments.known.as_deref(), "--known", &overrides)
+        .map_err(|error| error.advised())?;
     let laws = match arguments.law.as_deref() {
         None => Laws::Known,
         Some("all") => Laws::All,
@@ -89,7 +91,8 @@ fn prepare(arguments: &FitArguments) -> Result<(Lab, Laws, Profiles), String> {
             }
         },
     };
-    Ok((lab, laws, profiles(arguments.profile.as_deref())?))
+    let profiles = profiles(arguments.profile.as_deref()).map_err(|error| error.advised())?;
+    Ok((lab, laws, profiles))
 }
 
 fn inputs(arguments: &FitArguments) -> Vec<PathBuf> {
@@ -107,8 +110,11 @@ fn single(task: &Task<'_>, source: &Source, listen: &Listen<'_>) -> Done {
     watch.finish();
     let outcome = match found {
         Ok(outcome) => outcome,
-        Err(Failure::Input(message)) => return Err(super::refuse(&message)),
-        Err(Failure::NotFound(message) | Failure::Stopped(message)) => {
+        Err(failure) if failure.fault() == Fault::Input => {
+            return Err(super::refuse(&failure.advised()));
+        }
+        Err(failure) => {
+            let message = failure.advised();
             terminal::error(&message);
             let made = results::no_fit(source, &message);
             return output.deliver(folder.as_ref(), made, &inputs, |_| String::new(), false);
@@ -141,16 +147,18 @@ fn batch(task: &Task<'_>, sources: &[Source], listen: &Listen<'_>) -> Done {
     let outcomes: Vec<Result<Outcome, Failure>> = pool.install(all);
     watch.finish();
     for failure in outcomes.iter().filter_map(|outcome| outcome.as_ref().err()) {
-        if !matches!(failure, Failure::Stopped(_)) {
-            terminal::error(&failure.message());
+        if failure.fault() != Fault::Stopped {
+            terminal::error(&failure.advised());
         }
     }
-    if outcomes.iter().all(|o| matches!(o, Err(Failure::Input(_)))) {
+    if outcomes.iter().all(|o| o.as_ref().is_err_and(|f| f.fault() == Fault::Input)) {
         return Err(Exit::BadInput);
     }
+    let outcomes: Vec<Result<Outcome, String>> =
+        outcomes.into_iter().map(|outcome| outcome.map_err(|failure| failure.advised())).collect();
     let made =
         results::fits(sources, &outcomes, task.look, output.wanted(folder.as_ref(), *report));
-    let good = |o: &Result<Outcome, Failure>| o.as_ref().is_ok_and(|o| o.best.report.is_good());
+    let good = |o: &Result<Outcome, String>| o.as_ref().is_ok_and(|o| o.best.report.is_good());
     let complete = outcomes.iter().all(good);
     let (fitted, total) = (outcomes.iter().filter(|o| o.is_ok()).count(), outcomes.len());
     let words = |written: Option<&Path>| {

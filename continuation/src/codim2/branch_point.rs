@@ -3,15 +3,16 @@
 use super::differences::{Along, Differences};
 use super::trace::{Curve, trace};
 use super::underlying::{CurveError, Underlying};
+use super::work::TraceWork;
 use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Event, EventKind, Stop, StopReason};
 use crate::events::Watch;
 use crate::linalg::{AnyMatrix, Arrow, Bordered, Matrix};
+use crate::name::Name;
 use crate::problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints};
 use crate::settings::Settings;
 use crate::step::dot;
 use crate::tracer::Progress;
-use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 /// Names of the residual that remains among the observables, as it is and relative to what the
@@ -44,16 +45,18 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// there: the curve goes on behind it, or ends with a step that is too small.
 ///
 /// Observables are `p`, those of the original problem, `beta` and `unfolding`.
+#[derive(Clone)]
 pub struct BranchPointCurve<'a> {
     base: Underlying<'a>,
-    names: Vec<&'static str>,
+    names: Vec<Name>,
     /// The start, `(u, β, p)`.
     start: Vec<f64>,
     /// The bordered matrix there: both halves of the curve begin with the same one.
     at_start: Kernel,
-    work: RefCell<Work>,
+    work: TraceWork<Work>,
 }
 
+#[derive(Clone)]
 struct Work {
     at: Vec<f64>,
     level: Level,
@@ -205,9 +208,10 @@ impl<'a> BranchPointCurve<'a> {
             take(&base, &mut work);
         }
         let at_start = work.kernel.clone();
-        let mut curve = BranchPointCurve { base, names, start, at_start, work: RefCell::new(work) };
-        curve.turn(&mut curve.work.borrow_mut(), &curve.start, &curve.base.start())?;
-        curve.at_start = curve.work.borrow().kernel.clone();
+        let mut curve =
+            BranchPointCurve { base, names, start, at_start, work: TraceWork::new(work) };
+        curve.turn(&mut curve.work.get(), &curve.start, &curve.base.start())?;
+        curve.at_start = curve.work.get().kernel.clone();
         Ok(curve)
     }
 
@@ -237,10 +241,20 @@ impl<'a> BranchPointCurve<'a> {
         watches: &[Watch],
         observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Curve, CurveError> {
+        self.clone().follow(settings, watches, observer)
+    }
+
+    /// [`BranchPointCurve::trace`] with the borders of this copy.
+    fn follow(
+        &self,
+        settings: &Settings,
+        watches: &[Watch],
+        observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<Curve, CurveError> {
         let mut all: Vec<Watch> = watches.to_vec();
         all.extend(Self::bounds());
-        let second = self.base.parameters[self.base.second_of_curve().0].name;
-        let start = (second, &self.start[..], &self.base.start()[..]);
+        let second = &self.base.parameters[self.base.second_of_curve().0].name;
+        let start = (&second[..], &self.start[..], &self.base.start()[..]);
         let mut curve = trace(self, start, settings, &all, observer)?;
         self.explain(&mut curve);
         Ok(curve)
@@ -257,7 +271,7 @@ impl<'a> BranchPointCurve<'a> {
             if end.reason != StopReason::Target || !unfolded {
                 continue;
             }
-            let name = self.base.parameters[self.base.second_of_curve().0].name;
+            let name = &self.base.parameters[self.base.second_of_curve().0].name;
             let beta = point.observables[unfolding - 1];
             let detail = format!(
                 "the branch point does not persist: at {name} = {:.10} it is unfolded (β = {beta:.3e})",
@@ -418,7 +432,7 @@ impl Problem for BranchPointCurve<'_> {
 
     fn residual(&self, x: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
         let n = self.base.problem.dim();
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Null)?;
         r[..n].copy_from_slice(&work.r);
         r[n..].copy_from_slice(&work.kernel.turned(work.kernel.g));
@@ -426,7 +440,7 @@ impl Problem for BranchPointCurve<'_> {
     }
 
     fn jacobian(&self, x: &[f64], p: &[f64], j: &mut Self::Jacobian) -> Result<(), EvalError> {
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Gradient)?;
         let kernel = &work.kernel;
         let [first, second] = [0, 1].map(|k| &work.differences[k].derivatives[0]);
@@ -454,7 +468,7 @@ impl Problem for BranchPointCurve<'_> {
         j: &mut Self::Jacobian,
     ) -> Result<(), EvalError> {
         if *x == self.start {
-            let work = &mut *self.work.borrow_mut();
+            let work = &mut *self.work.get();
             work.kernel.clone_from(&self.at_start);
             work.level = Level::Nothing;
         }
@@ -471,7 +485,7 @@ impl Problem for BranchPointCurve<'_> {
     ) -> Result<(), EvalError> {
         let n = self.base.problem.dim();
         let which = self.base.original(which);
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Gradient)?;
         self.base.problem.parameter_derivative(&x[..n], &work.p, which, &mut out[..n])?;
         let second = which == self.base.second;
@@ -498,14 +512,14 @@ impl Problem for BranchPointCurve<'_> {
         Some(self)
     }
 
-    fn observables(&self) -> &[&'static str] {
+    fn observables(&self) -> &[Name] {
         &self.names
     }
 
     fn observe(&self, x: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
         let n = self.base.problem.dim();
         let last = out.len() - 1;
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Gradient)?;
         out[0] = x[n + 1];
         self.base.problem.observe(&x[..n], &work.p, &mut out[1..last - 1])?;
@@ -533,7 +547,7 @@ impl SpecialPoints for BranchPointCurve<'_> {
     }
 
     fn separation(&self, x: &[f64], p: &[f64]) -> Result<Option<f64>, EvalError> {
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Gradient)?;
         let form = Self::form(work);
         // where the form vanishes or has a double root the tangents of the branches are not two

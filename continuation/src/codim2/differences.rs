@@ -41,6 +41,7 @@ pub(super) fn slope_step(step: f64, q: f64, dq: f64) -> f64 {
 }
 
 /// Work space of the differences along one direction.
+#[derive(Clone)]
 pub(super) struct Differences {
     shifted: AnyMatrix,
     place: Vec<f64>,

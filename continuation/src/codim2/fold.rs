@@ -4,17 +4,19 @@ use super::differences::{Along, Differences, slope_step};
 use super::null::Null;
 use super::trace::{Curve, trace};
 use super::underlying::{CurveError, Underlying};
+use super::work::TraceWork;
 use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Event, EventKind, Point};
 use crate::events::Watch;
 use crate::linalg::{AnyMatrix, Arrow, Matrix, max_abs};
 use crate::modes::{ModeSolver, has_certain_signs};
+use crate::name::Name;
 use crate::problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints, Stability};
 use crate::settings::Settings;
 use crate::step::{dot, hessian_inertia};
 use crate::tracer::Progress;
-use std::cell::RefCell;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// Names of the functions whose zeros are cusps and Bogdanov-Takens points.
 const TESTS: [&str; 2] = ["cusp", "bogdanov_takens"];
@@ -35,19 +37,21 @@ const SLOPE: f64 = 1e-4;
 /// A fold curve does not end at a [cusp](EventKind::Cusp), a
 /// [Bogdanov-Takens](EventKind::BogdanovTakens) or a [zero-Hopf](EventKind::ZeroHopf) point; it is
 /// traced through. Where it turns in `q` (at cusps, and elsewhere) no event is made of that.
+#[derive(Clone)]
 pub struct FoldCurve<'a> {
     pub(super) base: Underlying<'a>,
-    names: Vec<&'static str>,
+    names: Vec<Name>,
     /// Number of the first test among the observables.
     first_test: usize,
     mass: Option<AnyMatrix>,
     /// The start, `(u, p)`.
     start: Vec<f64>,
-    modes: ModeSolver,
-    work: RefCell<Work>,
+    modes: Arc<ModeSolver>,
+    work: TraceWork<Work>,
 }
 
 /// What is known at the latest state.
+#[derive(Clone)]
 struct Work {
     /// The state and the parameters of the curve, and for which of them the rest is known.
     at: Vec<f64>,
@@ -138,9 +142,9 @@ impl<'a> FoldCurve<'a> {
             }
             work.null.take();
         }
-        let modes = ModeSolver::new(problem, 0);
+        let modes = Arc::new(ModeSolver::new(problem, 0));
         let first_test = 1 + problem.observables().len();
-        let work = RefCell::new(work);
+        let work = TraceWork::new(work);
         Ok(FoldCurve { base, names, first_test, mass, start, modes, work })
     }
 
@@ -168,10 +172,20 @@ impl<'a> FoldCurve<'a> {
         watches: &[Watch],
         observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Curve, CurveError> {
+        self.clone().follow(settings, watches, observer)
+    }
+
+    /// [`FoldCurve::trace`] with the borders of this copy.
+    fn follow(
+        &self,
+        settings: &Settings,
+        watches: &[Watch],
+        observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<Curve, CurveError> {
         let mut all: Vec<Watch> = watches.to_vec();
         all.extend(self.names[self.first_test..].iter().map(|name| Watch::zero(name)));
-        let second = self.base.parameters[self.base.second_of_curve().0].name;
-        let start = (second, &self.start[..], &self.base.start()[..]);
+        let second = &self.base.parameters[self.base.second_of_curve().0].name;
+        let start = (&second[..], &self.start[..], &self.base.start()[..]);
         let mut curve = trace(self, start, settings, &all, observer)?;
         self.confirm_cusps(&mut curve);
         Ok(curve)
@@ -326,7 +340,7 @@ impl Problem for FoldCurve<'_> {
 
     fn residual(&self, x: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
         let n = self.base.problem.dim();
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Null)?;
         r[..n].copy_from_slice(&work.r);
         r[n] = work.null.g;
@@ -335,7 +349,7 @@ impl Problem for FoldCurve<'_> {
 
     fn jacobian(&self, x: &[f64], p: &[f64], j: &mut Self::Jacobian) -> Result<(), EvalError> {
         let n = self.base.problem.dim();
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Gradient)?;
         let first = self.base.first;
         self.base.problem.parameter_derivative(&x[..n], &work.p, first, j.column_mut(0))?;
@@ -357,7 +371,7 @@ impl Problem for FoldCurve<'_> {
     ) -> Result<(), EvalError> {
         let n = self.base.problem.dim();
         let which = self.base.original(which);
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Gradient)?;
         self.base.problem.parameter_derivative(&x[..n], &work.p, which, &mut out[..n])?;
         out[n] = if which == self.base.second {
@@ -380,13 +394,13 @@ impl Problem for FoldCurve<'_> {
         Some(self)
     }
 
-    fn observables(&self) -> &[&'static str] {
+    fn observables(&self) -> &[Name] {
         &self.names
     }
 
     fn observe(&self, x: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
         let n = self.base.problem.dim();
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         let tests = self.tests_at(work, x, p)?;
         out[0] = x[n];
         self.base.problem.observe(&x[..n], &work.p, &mut out[1..self.first_test])?;
@@ -406,7 +420,7 @@ impl Problem for FoldCurve<'_> {
         dq: f64,
     ) -> Result<Option<f64>, EvalError> {
         let n = self.base.problem.dim();
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         if k == 0 {
             return Ok(Some(dx[n]));
         }
@@ -454,7 +468,7 @@ impl Work {
 
 impl SpecialPoints for FoldCurve<'_> {
     fn others(&self, x: &[f64], p: &[f64]) -> Result<Others, EvalError> {
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Null)?;
         let problem = self.base.problem;
         let multipliers = problem.multipliers();
@@ -499,7 +513,7 @@ impl SpecialPoints for FoldCurve<'_> {
     }
 
     fn error(&self, observable: usize) -> f64 {
-        let errors = self.work.borrow().errors;
+        let errors = self.work.get().errors;
         let test = observable.checked_sub(self.first_test);
         test.and_then(|test| errors.get(test)).copied().unwrap_or(0.0)
     }

@@ -5,18 +5,20 @@ use super::pair::{LEFT, PairNull, RIGHT};
 use super::takens;
 use super::trace::{Curve, trace};
 use super::underlying::{CurveError, Underlying};
+use super::work::TraceWork;
 use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Event, EventKind, Point};
 use crate::events::Watch;
 use crate::linalg::{AnyMatrix, Arrow, Matrix};
 use crate::modes::{ModeSolver, has_certain_signs};
+use crate::name::Name;
 use crate::problem::{EvalError, Others, ParamId, Parameter, Problem, SpecialPoints};
 use crate::settings::Settings;
 use crate::singular::{Extended, Probe, lyapunov_coefficient};
 use crate::step::{Weights, dot};
 use crate::tracer::Progress;
-use std::cell::RefCell;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// Name of the frequency among the observables.
 const OMEGA: &str = "omega";
@@ -44,19 +46,21 @@ const FEW: usize = 10;
 /// [Zero-Hopf](EventKind::ZeroHopf) and [double-Hopf](EventKind::DoubleHopf) points come from the
 /// full spectrum of small dense matrices, else from the eigenvalues nearest to zero, among which
 /// pairs of high frequency may be missing.
+#[derive(Clone)]
 pub struct HopfCurve<'a> {
     pub(super) base: Underlying<'a>,
-    names: Vec<&'static str>,
+    names: Vec<Name>,
     /// Index of the test among the observables.
     test: usize,
     /// The start, `(u, p, ω)`.
     start: Vec<f64>,
     /// Length of a unit of `ω` in the metric.
     frequency_metric: f64,
-    modes: ModeSolver,
-    work: RefCell<Work<'a>>,
+    modes: Arc<ModeSolver>,
+    work: TraceWork<Work<'a>>,
 }
 
+#[derive(Clone)]
 struct Work<'a> {
     /// The state and the parameters of the curve for which the rest is known.
     at: Vec<f64>,
@@ -110,7 +114,7 @@ impl<'a> HopfCurve<'a> {
         let mut jacobian = problem.new_jacobian();
         problem.jacobian(&base.u, &base.p, &mut jacobian)?;
         let mut pair = PairNull::new(problem).ok_or(CurveError::NoComplexForm)?;
-        let modes = ModeSolver::new(problem, 0);
+        let modes = Arc::new(ModeSolver::new(problem, 0));
         let omega = match event.hopf() {
             Some(form) => form.frequency,
             None => {
@@ -128,7 +132,7 @@ impl<'a> HopfCurve<'a> {
         }
         base.widen(pair.larger_part())?;
         let mut names = base.names(&[TEST]);
-        names.insert(1, OMEGA);
+        names.insert(1, OMEGA.into());
         let mut start = base.u.clone();
         start.extend([base.p[base.first.0], omega]);
         let scales = base.scales;
@@ -157,7 +161,7 @@ impl<'a> HopfCurve<'a> {
             start,
             frequency_metric: scales.unknowns / omega,
             modes,
-            work: RefCell::new(work),
+            work: TraceWork::new(work),
             base,
         })
     }
@@ -185,11 +189,21 @@ impl<'a> HopfCurve<'a> {
         watches: &[Watch],
         observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Curve, CurveError> {
+        self.clone().follow(settings, watches, observer)
+    }
+
+    /// [`HopfCurve::trace`] with the borders of this copy.
+    fn follow(
+        &self,
+        settings: &Settings,
+        watches: &[Watch],
+        observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<Curve, CurveError> {
         let omega = self.start[self.start.len() - 1];
         let mut all: Vec<Watch> = watches.to_vec();
         all.extend([Watch::zero(TEST), Watch::stop_at(OMEGA, LAST * omega)]);
-        let second = self.base.parameters[self.base.second_of_curve().0].name;
-        let start = (second, &self.start[..], &self.base.start()[..]);
+        let second = &self.base.parameters[self.base.second_of_curve().0].name;
+        let start = (&second[..], &self.start[..], &self.base.start()[..]);
         let mut curve = trace(self, start, settings, &all, observer)?;
         self.confirm(&mut curve);
         takens::finish(self, &mut curve, LAST * omega);
@@ -214,7 +228,7 @@ impl<'a> HopfCurve<'a> {
                 side.map_or(0.0, |side| {
                     let mut p = self.base.start();
                     p[self.base.second_of_curve().0] = side.p;
-                    let work = &mut *self.work.borrow_mut();
+                    let work = &mut *self.work.get();
                     let value = self.lyapunov(work, &side.u[..n + 2], &p);
                     // a sign that the error allows
                     value.ok().filter(|l| l.abs() > 2.0 * work.error).map_or(0.0, f64::signum)
@@ -321,7 +335,7 @@ impl Problem for HopfCurve<'_> {
 
     fn residual(&self, x: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
         let n = self.base.problem.dim();
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Null)?;
         r[..n].copy_from_slice(&work.r);
         r[n] = work.pair.g[0];
@@ -332,7 +346,7 @@ impl Problem for HopfCurve<'_> {
     fn jacobian(&self, x: &[f64], p: &[f64], j: &mut Self::Jacobian) -> Result<(), EvalError> {
         let n = self.base.problem.dim();
         let omega = x[n + 1];
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Gradient)?;
         let first = self.base.first;
         self.base.problem.parameter_derivative(&x[..n], &work.p, first, j.column_mut(0))?;
@@ -360,7 +374,7 @@ impl Problem for HopfCurve<'_> {
     ) -> Result<(), EvalError> {
         let n = self.base.problem.dim();
         let which = self.base.original(which);
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Gradient)?;
         self.base.problem.parameter_derivative(&x[..n], &work.p, which, &mut out[..n])?;
         let by = if which == self.base.second {
@@ -398,13 +412,13 @@ impl Problem for HopfCurve<'_> {
         Some(self)
     }
 
-    fn observables(&self) -> &[&'static str] {
+    fn observables(&self) -> &[Name] {
         &self.names
     }
 
     fn observe(&self, x: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
         let n = self.base.problem.dim();
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         out[self.test] = self.lyapunov(work, x, p)?;
         (out[0], out[1]) = (x[n], x[n + 1]);
         self.base.problem.observe(&x[..n], &work.p, &mut out[2..self.test])?;
@@ -428,7 +442,7 @@ impl Problem for HopfCurve<'_> {
         if k < 2 {
             return Ok(Some(dx[n + k]));
         }
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         if k == self.test {
             let mut sides = [0.0; 2];
             let eps = slope_step(SLOPE, p[which.0], dq);
@@ -449,7 +463,7 @@ impl Problem for HopfCurve<'_> {
 impl SpecialPoints for HopfCurve<'_> {
     fn others(&self, x: &[f64], p: &[f64]) -> Result<Others, EvalError> {
         let n = self.base.problem.dim();
-        let work = &mut *self.work.borrow_mut();
+        let work = &mut *self.work.get();
         self.bring(work, x, p, Level::Null)?;
         let all = self.modes.spectrum(&work.jacobian);
         let certified = all.as_ref().is_some_and(|s| has_certain_signs(s, f64::INFINITY));
@@ -479,7 +493,7 @@ impl SpecialPoints for HopfCurve<'_> {
     }
 
     fn error(&self, observable: usize) -> f64 {
-        if observable == self.test { self.work.borrow().error } else { 0.0 }
+        if observable == self.test { self.work.get().error } else { 0.0 }
     }
 
     fn crossing_pair(&self) -> Option<EventKind> {

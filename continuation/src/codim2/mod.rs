@@ -66,6 +66,7 @@ mod pair;
 mod takens;
 mod trace;
 mod underlying;
+mod work;
 
 pub use branch_point::BranchPointCurve;
 pub use fold::FoldCurve;

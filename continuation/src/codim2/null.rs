@@ -8,6 +8,7 @@ use crate::step::dot;
 const ALIGNED: f64 = 0.9;
 
 /// The solution of `[A b; cᵀ 0] [v; g] = [0; 1]` and that of the transposed system.
+#[derive(Clone)]
 pub(super) struct Null {
     bordered: Bordered,
     pub(super) right: Vec<f64>,

@@ -9,6 +9,7 @@ const ALIGNED: f64 = 0.9;
 
 /// The solution of `[A b; cᴴ 0] [v; g] = [0; 1]` with `A = f_u − iωM`, and that of the conjugate
 /// transposed system.
+#[derive(Clone)]
 pub(super) struct PairNull {
     mass: AnyMatrix,
     bordered: Bordered,

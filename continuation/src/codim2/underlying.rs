@@ -3,6 +3,7 @@
 use crate::any_problem::DynProblem;
 use crate::branch::{Branch, Event, EventKind, Point};
 use crate::linalg::{Matrix, max_abs};
+use crate::name::{Name, listed};
 use crate::problem::{EvalError, ParamId, Parameter};
 use crate::singular::{Extended, Probe};
 use crate::step::{Weights, dot};
@@ -68,6 +69,7 @@ pub(super) struct Scales {
 }
 
 /// The problem, its first parameter, now an unknown, and its second.
+#[derive(Clone)]
 pub(super) struct Underlying<'a> {
     pub(super) problem: &'a DynProblem<'a>,
     pub(super) first: ParamId,
@@ -101,7 +103,7 @@ impl<'a> Underlying<'a> {
         let first = index(&branch.parameter).ok_or(foreign("it has no such parameter"))?;
         let second = index(second).ok_or_else(|| CurveError::UnknownParameter {
             name: second.to_owned(),
-            known: all.iter().map(|q| q.name).collect::<Vec<_>>().join(", "),
+            known: listed(all),
         })?;
         if first == second {
             return Err(CurveError::SameParameter { name: branch.parameter.clone() });
@@ -245,10 +247,10 @@ impl<'a> Underlying<'a> {
     }
 
     /// Names of the first parameter, the problem's own observables and the `tests`.
-    pub(super) fn names(&self, tests: &[&'static str]) -> Vec<&'static str> {
-        let own = self.problem.observables().iter().copied();
-        let first = self.problem.parameters()[self.first.0].name;
-        std::iter::once(first).chain(own).chain(tests.iter().copied()).collect()
+    pub(super) fn names(&self, tests: &[&'static str]) -> Vec<Name> {
+        let own = self.problem.observables().iter().cloned();
+        let first = self.problem.parameters()[self.first.0].name.clone();
+        std::iter::once(first).chain(own).chain(tests.iter().map(|test| (*test).into())).collect()
     }
 
     /// The problem's own observable `k` along `(du, dp, dq)`, where it knows that itself.

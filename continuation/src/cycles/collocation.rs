@@ -10,11 +10,13 @@ use super::matrix::CycleMatrix;
 use super::mesh::Orbit;
 use crate::any_problem::DynProblem;
 use crate::linalg::{AnyMatrix, Dense, Matrix};
+use crate::name::Name;
+use crate::names;
+use crate::pool::Pool;
 use crate::problem::{
     EvalError, ParamId, Parameter, Problem, Stability, check_finite, check_pattern,
 };
 use crate::step::dot;
-use std::cell::RefCell;
 
 /// Largest number of unknowns of an interval, `n m`: its block is dense.
 pub const MAX_BLOCK: usize = 800;
@@ -54,7 +56,7 @@ pub struct CycleProblem<'a> {
     mass: Option<Dense>,
     /// Whether the metric of the unknowns is the identity.
     plain: bool,
-    work: RefCell<Work>,
+    work: Pool<Work>,
 }
 
 struct Work {
@@ -79,6 +81,30 @@ struct Work {
     latest: Latest,
     /// For the multipliers alone.
     matrix: Option<CycleMatrix>,
+}
+
+impl Work {
+    /// For cycles of this degree on so many intervals.
+    fn new(problem: &DynProblem<'_>, degree: usize, intervals: usize) -> Self {
+        let n = problem.dim();
+        let vector = |blocks: usize| vec![0.0; blocks * n];
+        Work {
+            u: vector(degree),
+            du: vector(degree),
+            nodes: vector(degree + 1),
+            f: vector(1),
+            jacobian: problem.new_jacobian(),
+            slopes: vector(n),
+            unit: vector(1),
+            weighed: vector(2),
+            known: Known::default(),
+            along: Vec::new(),
+            slopes_along: [0.0; 2],
+            shifted: vec![0.0; intervals * degree * n + 1],
+            latest: Latest::default(),
+            matrix: None,
+        }
+    }
 }
 
 /// The multipliers at a state.
@@ -153,22 +179,7 @@ impl<'a> CycleProblem<'a> {
         let basis = Basis::new(cycle.degree);
         let (mesh, m) = (cycle.mesh.clone(), cycle.degree);
         let intervals = mesh.len() - 1;
-        let work = Work {
-            u: vec![0.0; n * m],
-            du: vec![0.0; n * m],
-            nodes: vec![0.0; n * (m + 1)],
-            f: vec![0.0; n],
-            jacobian: problem.new_jacobian(),
-            slopes: vec![0.0; n * n],
-            unit: vec![0.0; n],
-            weighed: vec![0.0; 2 * n],
-            known: Known::default(),
-            along: Vec::new(),
-            slopes_along: [0.0; 2],
-            shifted: vec![0.0; intervals * m * n + 1],
-            latest: Latest::default(),
-            matrix: None,
-        };
+        let work = Work::new(problem, m, intervals);
         let mut equations = CycleProblem {
             problem,
             n,
@@ -178,7 +189,7 @@ impl<'a> CycleProblem<'a> {
             border: vec![0.0; intervals * (m + 1) * n],
             mass: mass(problem)?,
             plain: is_plain(problem),
-            work: RefCell::new(work),
+            work: Pool::new(work),
             basis,
         };
         let norm = equations.refer(&cycle.values, cycle.period);
@@ -195,22 +206,23 @@ impl<'a> CycleProblem<'a> {
         let k = n * m;
         let mut phase = std::mem::take(&mut self.phase);
         let mut square = 0.0;
-        {
-            let Work { u, du, nodes, known, along, .. } = &mut *self.work.borrow_mut();
-            known.at.clear();
-            along.clear();
-            for j in 0..self.intervals() {
-                let h = self.mesh[j + 1] - self.mesh[j];
-                self.interpolate(values, j, nodes, u, du);
-                // the slope is h u', and the weight of the point h w
-                let places = phase[j * k..(j + 1) * k].chunks_exact_mut(n);
-                for ((slope, place), w) in du.chunks_exact(n).zip(places).zip(&self.basis.weights) {
-                    self.problem.metric(slope, place);
-                    square += w * dot(slope, place) / h;
-                    place.iter_mut().for_each(|p| *p *= w);
-                }
+        // what others know is of the reference before
+        let mut work = self.work.take_one().unwrap_or_else(|| self.new_work());
+        let Work { u, du, nodes, known, along, .. } = &mut work;
+        known.at.clear();
+        along.clear();
+        for j in 0..self.intervals() {
+            let h = self.mesh[j + 1] - self.mesh[j];
+            self.interpolate(values, j, nodes, u, du);
+            // the slope is h u', and the weight of the point h w
+            let places = phase[j * k..(j + 1) * k].chunks_exact_mut(n);
+            for ((slope, place), w) in du.chunks_exact(n).zip(places).zip(&self.basis.weights) {
+                self.problem.metric(slope, place);
+                square += w * dot(slope, place) / h;
+                place.iter_mut().for_each(|p| *p *= w);
             }
         }
+        self.work = Pool::new(work);
         let norm = square.sqrt();
         phase.iter_mut().for_each(|x| *x /= norm);
         self.border.fill(0.0);
@@ -226,6 +238,15 @@ impl<'a> CycleProblem<'a> {
         // |u'| over 2π: the amplitude of the orbit if it is a circle
         self.unit = norm / (2.0 * std::f64::consts::PI) / period;
         norm
+    }
+
+    fn new_work(&self) -> Work {
+        Work::new(self.problem, self.basis.degree, self.intervals())
+    }
+
+    /// Evaluates with a work space that nobody else uses meanwhile.
+    fn with<R>(&self, evaluate: impl FnOnce(&mut Work) -> R) -> R {
+        self.work.with(|| self.new_work(), evaluate)
     }
 
     /// Number of intervals.
@@ -270,9 +291,10 @@ impl<'a> CycleProblem<'a> {
     /// # Errors
     /// Where the problem has no value, or an interval is too long for its solution.
     pub fn multipliers(&self, x: &[f64], p: &[f64]) -> Result<Vec<Multiplier>, EvalError> {
-        let work = &mut *self.work.borrow_mut();
-        self.find_multipliers(work, x, p)?;
-        Ok(work.known.multipliers.clone())
+        self.with(|work| {
+            self.find_multipliers(work, x, p)?;
+            Ok(work.known.multipliers.clone())
+        })
     }
 
     fn find_multipliers(&self, work: &mut Work, x: &[f64], p: &[f64]) -> Result<(), EvalError> {
@@ -311,7 +333,7 @@ impl<'a> CycleProblem<'a> {
     pub(super) fn flip(&self, x: &[f64], p: &[f64]) -> Result<Option<Vec<f64>>, EvalError> {
         let size = self.dim();
         let mut matrix = CycleMatrix::new(self.n, self.basis.degree, self.intervals(), -1.0);
-        self.assemble(&mut self.work.borrow_mut(), x, p, None, &mut matrix)?;
+        self.with(|work| self.assemble(work, x, p, None, &mut matrix))?;
         let wide = self.n * (self.basis.degree + 1) + 1;
         for j in 0..self.intervals() {
             let block = matrix.block_mut(j);
@@ -337,19 +359,21 @@ impl<'a> CycleProblem<'a> {
     /// Cosine between the derivatives of the orbit and of the reference.
     pub(super) fn alignment(&self, x: &[f64]) -> f64 {
         let (n, m) = (self.n, self.basis.degree);
-        let Work { u, du, nodes, f, .. } = &mut *self.work.borrow_mut();
-        let (mut along, mut square) = (0.0, 0.0);
-        for j in 0..self.intervals() {
-            let h = self.mesh[j + 1] - self.mesh[j];
-            self.interpolate(x, j, nodes, u, du);
-            for (i, du) in du.chunks_exact(n).enumerate() {
-                let at = (j * m + i) * n;
-                along += dot(&self.phase[at..at + n], du) / h;
-                self.problem.metric(du, f);
-                square += self.basis.weights[i] * dot(du, f) / h;
+        self.with(|work| {
+            let Work { u, du, nodes, f, .. } = work;
+            let (mut along, mut square) = (0.0, 0.0);
+            for j in 0..self.intervals() {
+                let h = self.mesh[j + 1] - self.mesh[j];
+                self.interpolate(x, j, nodes, u, du);
+                for (i, du) in du.chunks_exact(n).enumerate() {
+                    let at = (j * m + i) * n;
+                    along += dot(&self.phase[at..at + n], du) / h;
+                    self.problem.metric(du, f);
+                    square += self.basis.weights[i] * dot(du, f) / h;
+                }
             }
-        }
-        along / square.sqrt()
+            along / square.sqrt()
+        })
     }
 
     /// States and derivatives, times the interval's length, at the Gauss points of interval `j`; its
@@ -456,24 +480,26 @@ impl Problem for CycleProblem<'_> {
     /// `M u′ − h T f` at the Gauss points, and the phase condition.
     fn residual(&self, x: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
         let (n, m, end) = (self.n, self.basis.degree, self.dim() - 1);
-        let Work { u, du, nodes, f, .. } = &mut *self.work.borrow_mut();
-        let (period, k) = (self.period(x)?, n * m);
-        r[end] = 0.0;
-        for j in 0..self.intervals() {
-            let h = self.mesh[j + 1] - self.mesh[j];
-            self.interpolate(x, j, nodes, u, du);
-            for (i, (u, du)) in u.chunks_exact(n).zip(du.chunks_exact(n)).enumerate() {
-                self.problem.residual(u, p, f)?;
-                check_finite(f)?;
-                self.row(du, f, h * period, &mut r[j * k + i * n..]);
+        self.with(|work| {
+            let Work { u, du, nodes, f, .. } = work;
+            let (period, k) = (self.period(x)?, n * m);
+            r[end] = 0.0;
+            for j in 0..self.intervals() {
+                let h = self.mesh[j + 1] - self.mesh[j];
+                self.interpolate(x, j, nodes, u, du);
+                for (i, (u, du)) in u.chunks_exact(n).zip(du.chunks_exact(n)).enumerate() {
+                    self.problem.residual(u, p, f)?;
+                    check_finite(f)?;
+                    self.row(du, f, h * period, &mut r[j * k + i * n..]);
+                }
+                r[end] += dot(&self.border[j * (k + n)..(j + 1) * (k + n)], nodes);
             }
-            r[end] += dot(&self.border[j * (k + n)..(j + 1) * (k + n)], nodes);
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     fn jacobian(&self, x: &[f64], p: &[f64], j: &mut CycleMatrix) -> Result<(), EvalError> {
-        self.assemble(&mut self.work.borrow_mut(), x, p, None, j)
+        self.with(|work| self.assemble(work, x, p, None, j))
     }
 
     fn linearise(
@@ -483,7 +509,7 @@ impl Problem for CycleProblem<'_> {
         r: &mut [f64],
         j: &mut CycleMatrix,
     ) -> Result<(), EvalError> {
-        self.assemble(&mut self.work.borrow_mut(), x, p, Some(r), j)
+        self.with(|work| self.assemble(work, x, p, Some(r), j))
     }
 
     fn parameter_derivative(
@@ -494,18 +520,20 @@ impl Problem for CycleProblem<'_> {
         out: &mut [f64],
     ) -> Result<(), EvalError> {
         let (n, end) = (self.n, self.dim() - 1);
-        let Work { u, du, nodes, f, .. } = &mut *self.work.borrow_mut();
-        let period = self.period(x)?;
-        out[end] = 0.0;
-        for (j, out) in out[..end].chunks_exact_mut(u.len()).enumerate() {
-            let h = self.mesh[j + 1] - self.mesh[j];
-            self.interpolate(x, j, nodes, u, du);
-            for (u, out) in u.chunks_exact(n).zip(out.chunks_exact_mut(n)) {
-                self.problem.parameter_derivative(u, p, which, f)?;
-                out.iter_mut().zip(f.iter()).for_each(|(o, f)| *o = -h * period * f);
+        self.with(|work| {
+            let Work { u, du, nodes, f, .. } = work;
+            let period = self.period(x)?;
+            out[end] = 0.0;
+            for (j, out) in out[..end].chunks_exact_mut(u.len()).enumerate() {
+                let h = self.mesh[j + 1] - self.mesh[j];
+                self.interpolate(x, j, nodes, u, du);
+                for (u, out) in u.chunks_exact(n).zip(out.chunks_exact_mut(n)) {
+                    self.problem.parameter_derivative(u, p, which, f)?;
+                    out.iter_mut().zip(f.iter()).for_each(|(o, f)| *o = -h * period * f);
+                }
             }
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     fn derivative_error(
@@ -518,61 +546,66 @@ impl Problem for CycleProblem<'_> {
         out: &mut [f64],
     ) -> Result<(), EvalError> {
         let (n, end) = (self.n, self.dim() - 1);
-        let Work { u, du, nodes, f, .. } = &mut *self.work.borrow_mut();
-        let period = self.period(x)?;
-        let mut along = vec![0.0; u.len()];
-        out[end] = 0.0;
-        for (j, out) in out[..end].chunks_exact_mut(u.len()).enumerate() {
-            let h = self.mesh[j + 1] - self.mesh[j];
-            self.interpolate(x, j, nodes, u, du);
-            self.interpolate(dx, j, nodes, &mut along, du);
-            let states = u.chunks_exact(n).zip(along.chunks_exact(n));
-            for ((u, along), out) in states.zip(out.chunks_exact_mut(n)) {
-                self.problem.derivative_error(u, p, which, along, dp, f)?;
-                out.iter_mut().zip(f.iter()).for_each(|(o, f)| *o = h * period * f);
+        self.with(|work| {
+            let Work { u, du, nodes, f, .. } = work;
+            let period = self.period(x)?;
+            let mut along = vec![0.0; u.len()];
+            out[end] = 0.0;
+            for (j, out) in out[..end].chunks_exact_mut(u.len()).enumerate() {
+                let h = self.mesh[j + 1] - self.mesh[j];
+                self.interpolate(x, j, nodes, u, du);
+                self.interpolate(dx, j, nodes, &mut along, du);
+                let states = u.chunks_exact(n).zip(along.chunks_exact(n));
+                for ((u, along), out) in states.zip(out.chunks_exact_mut(n)) {
+                    self.problem.derivative_error(u, p, which, along, dp, f)?;
+                    out.iter_mut().zip(f.iter()).for_each(|(o, f)| *o = h * period * f);
+                }
             }
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     fn metric(&self, x: &[f64], y: &mut [f64]) {
         let (n, m, end) = (self.n, self.basis.degree, self.dim() - 1);
-        let Work { weighed, nodes, .. } = &mut *self.work.borrow_mut();
-        let (k, last) = (n * m, self.intervals() - 1);
-        // the metric of the unknowns first: it is the same everywhere
-        if self.plain {
-            y[..end].copy_from_slice(&x[..end]);
-        } else {
-            for (x, y) in x[..end].chunks_exact(n).zip(y.chunks_exact_mut(n)) {
-                self.problem.metric(x, y);
+        self.with(|work| {
+            let Work { weighed, nodes, .. } = work;
+            let (k, last) = (n * m, self.intervals() - 1);
+            // the metric of the unknowns first: it is the same everywhere
+            if self.plain {
+                y[..end].copy_from_slice(&x[..end]);
+            } else {
+                for (x, y) in x[..end].chunks_exact(n).zip(y.chunks_exact_mut(n)) {
+                    self.problem.metric(x, y);
+                }
             }
-        }
-        // the first state, and what an interval adds to its right end until that is reached
-        let (first, pending) = weighed.split_at_mut(n);
-        first.copy_from_slice(&y[..n]);
-        pending.fill(0.0);
-        for j in 0..=last {
-            let h = self.mesh[j + 1] - self.mesh[j];
-            nodes[..k].copy_from_slice(&y[j * k..(j + 1) * k]);
-            let right = if j == last { &*first } else { &y[(j + 1) * k..(j + 1) * k + n] };
-            nodes[k..].copy_from_slice(right);
-            let place = &mut y[j * k..(j + 1) * k];
-            sized!(n, k, weigh(&self.basis, h, nodes, place, pending));
-        }
-        y[..n].iter_mut().zip(pending).for_each(|(y, by)| *y += *by);
-        y[end] = x[end];
+            // the first state, and what an interval adds to its right end until that is reached
+            let (first, pending) = weighed.split_at_mut(n);
+            first.copy_from_slice(&y[..n]);
+            pending.fill(0.0);
+            for j in 0..=last {
+                let h = self.mesh[j + 1] - self.mesh[j];
+                nodes[..k].copy_from_slice(&y[j * k..(j + 1) * k]);
+                let right = if j == last { &*first } else { &y[(j + 1) * k..(j + 1) * k + n] };
+                nodes[k..].copy_from_slice(right);
+                let place = &mut y[j * k..(j + 1) * k];
+                sized!(n, k, weigh(&self.basis, h, nodes, place, pending));
+            }
+            y[..n].iter_mut().zip(pending).for_each(|(y, by)| *y += *by);
+            y[end] = x[end];
+        })
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &[PERIOD, DOUBLING, TORUS]
+    fn observables(&self) -> &[Name] {
+        names![PERIOD, DOUBLING, TORUS]
     }
 
     fn observe(&self, x: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
-        let work = &mut *self.work.borrow_mut();
-        self.find_multipliers(work, x, p)?;
-        let [doubling, torus] = work.known.tests;
-        out.copy_from_slice(&[x[self.dim() - 1] / self.unit, doubling, torus]);
-        Ok(())
+        self.with(|work| {
+            self.find_multipliers(work, x, p)?;
+            let [doubling, torus] = work.known.tests;
+            out.copy_from_slice(&[x[self.dim() - 1] / self.unit, doubling, torus]);
+            Ok(())
+        })
     }
 
     /// By central differences, of both functions of the multipliers at once; those at `x` stay known.
@@ -588,31 +621,35 @@ impl Problem for CycleProblem<'_> {
         if k == 0 {
             return Ok(Some(dx[self.dim() - 1] / self.unit));
         }
-        let work = &mut *self.work.borrow_mut();
-        let key = || x.iter().chain(p).chain(dx).chain(std::iter::once(&dp));
-        if !work.along.iter().eq(key()) {
-            work.along.clear();
-            let mut q = p.to_vec();
-            let mut shifted = std::mem::take(&mut work.shifted);
-            let mut sides = [[0.0; 2]; 2];
-            let mut complete = true;
-            for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
-                let step = sign * SHIFT;
-                q[which.0] = p[which.0] + step * dp;
-                shifted.iter_mut().zip(x.iter().zip(dx)).for_each(|(s, (x, d))| *s = x + step * d);
-                match self.multipliers_at(work, &shifted, &q) {
-                    Ok(found) => *side = functions(&found),
-                    Err(_) => complete = false,
+        self.with(|work| {
+            let key = || x.iter().chain(p).chain(dx).chain(std::iter::once(&dp));
+            if !work.along.iter().eq(key()) {
+                work.along.clear();
+                let mut q = p.to_vec();
+                let mut shifted = std::mem::take(&mut work.shifted);
+                let mut sides = [[0.0; 2]; 2];
+                let mut complete = true;
+                for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+                    let step = sign * SHIFT;
+                    q[which.0] = p[which.0] + step * dp;
+                    shifted
+                        .iter_mut()
+                        .zip(x.iter().zip(dx))
+                        .for_each(|(s, (x, d))| *s = x + step * d);
+                    match self.multipliers_at(work, &shifted, &q) {
+                        Ok(found) => *side = functions(&found),
+                        Err(_) => complete = false,
+                    }
                 }
+                work.shifted = shifted;
+                if !complete {
+                    // no value there: what is tried next says why
+                    return Ok(None);
+                }
+                work.slopes_along = [0, 1].map(|i| (sides[0][i] - sides[1][i]) / (2.0 * SHIFT));
+                work.along.extend(key());
             }
-            work.shifted = shifted;
-            if !complete {
-                // no value there: what is tried next says why
-                return Ok(None);
-            }
-            work.slopes_along = [0, 1].map(|i| (sides[0][i] - sides[1][i]) / (2.0 * SHIFT));
-            work.along.extend(key());
-        }
-        Ok(Some(work.slopes_along[k - 1]))
+            Ok(Some(work.slopes_along[k - 1]))
+        })
     }
 }

@@ -125,7 +125,7 @@ pub fn curve<P: Problem>(
         return Err(CycleError::Foreign { what: "it has no such parameter" });
     };
     let Some(other) = index(second) else {
-        let known = all.iter().map(|q| q.name).collect::<Vec<_>>().join(", ");
+        let known = all.iter().map(|q| &q.name[..]).collect::<Vec<_>>().join(", ");
         return Err(CurveError::UnknownParameter { name: second.to_owned(), known }.into());
     };
     if at == other {
@@ -141,7 +141,7 @@ pub fn curve<P: Problem>(
     let largest = branch.cycles.iter().map(|c| c.cycle.amplitude()).fold(0.0, f64::max);
     let mut bounds = Vec::new();
     if let Some((low, high)) = first {
-        bounds.extend([low, high].map(|level| Watch::stop_at(all[at].name, level)));
+        bounds.extend([low, high].map(|level| Watch::stop_at(&all[at].name, level)));
     }
     let mut run = Run {
         problem: &problem,
@@ -166,7 +166,7 @@ pub fn curve<P: Problem>(
         halves.push(half);
     }
     let one = halves.pop().ok_or(CycleError::Constant)?;
-    let names = [all[at].name.to_owned(), second.to_owned()];
+    let names = [all[at].name.to_string(), second.to_owned()];
     let mut curve = match halves.pop() {
         None => CycleCurve {
             kind,
@@ -310,7 +310,7 @@ impl Run<'_, '_> {
         observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Half, CycleError> {
         let settings = Settings { increasing: Some(increasing), ..self.settings.clone() };
-        let name = self.problem.parameters()[self.parameters[1].0].name;
+        let name = &self.problem.parameters()[self.parameters[1].0].name;
         let mut half = Half {
             points: Vec::new(),
             events: Vec::new(),
@@ -495,7 +495,7 @@ impl Run<'_, '_> {
                 q - (p - q) * y / (x - y)
             });
             if p.is_finite() && q.is_finite() {
-                let [first, second] = self.parameters.map(|i| self.problem.parameters()[i.0].name);
+                let [first, second] = self.parameters.map(|i| &self.problem.parameters()[i.0].name);
                 detail =
                     format!("{detail}, by extrapolation near {first} = {p:.6}, {second} = {q:.6}");
             }

@@ -35,7 +35,7 @@ impl<'a> Run<'a, '_> {
         p[self.which.0] = point.p;
         let halfway = equations.cycle(&point.u, &p).halfway();
         let before = self.cycles.iter().map(|c| c.cycle.halfway()).fold(0.0, f64::max);
-        let name = self.problem.parameters()[self.which.0].name;
+        let name = &self.problem.parameters()[self.which.0].name;
         (halfway < VANISHED[0] * before).then(|| Stop {
             reason: StopReason::PeriodHalved,
             detail: format!(
@@ -55,7 +55,7 @@ impl<'a> Run<'a, '_> {
         let mut p = vec![0.0; self.problem.parameters().len()];
         p[self.which.0] = point.p;
         let amplitude = equations.cycle(&point.u, &p).amplitude();
-        let name = self.problem.parameters()[self.which.0].name;
+        let name = &self.problem.parameters()[self.which.0].name;
         let singular = point
             .event
             .and_then(|e| tracer.events().get(e))
@@ -79,7 +79,7 @@ impl<'a> Run<'a, '_> {
 
     /// What to say of cycles that vanish.
     fn vanishing(&self) -> Stop {
-        let name = self.problem.parameters()[self.which.0].name;
+        let name = &self.problem.parameters()[self.which.0].name;
         let mut detail = "the cycles shrink to an equilibrium".to_owned();
         if let [.., a, b] = &self.cycles[..] {
             // the parameter varies as the square of the amplitude
@@ -115,7 +115,7 @@ impl<'a> Run<'a, '_> {
         if !(growing && rate < RESTS * self.range) {
             return None;
         }
-        let name = self.problem.parameters()[self.which.0].name;
+        let name = &self.problem.parameters()[self.which.0].name;
         let detail = format!(
             "the period is {u:.6} and grows without bound while {name} comes to rest near {q:.8}, where it has \
              changed by {:.1e} since the period was {t:.6}: the cycles approach a homoclinic or heteroclinic \

@@ -19,7 +19,7 @@ pub(super) fn columns(problem: &DynProblem<'_>) -> Vec<String> {
     let names: Vec<String> = if own.is_empty() {
         (0..problem.dim().min(MOST_UNKNOWNS)).map(|i| format!("u[{i}]")).collect()
     } else {
-        own.iter().map(|name| (*name).to_owned()).collect()
+        own.iter().map(|name| name.to_string()).collect()
     };
     names
         .iter()

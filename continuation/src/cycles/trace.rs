@@ -75,7 +75,7 @@ pub(crate) fn trace_of(
     cycle_settings.validate()?;
     let all = problem.parameters();
     let Some(which) = all.iter().position(|q| q.name == parameter).map(ParamId) else {
-        let known = all.iter().map(|q| q.name).collect::<Vec<_>>().join(", ");
+        let known = crate::name::listed(all);
         return Err(TraceError::UnknownParameter { name: parameter.to_owned(), known }.into());
     };
     let settings = Settings { counting: Counting::Few, eigenvalues: 0, ..settings.clone() };

@@ -219,10 +219,10 @@ fn offsets(
     side: f64,
     inside: bool,
 ) -> Vec<f64> {
-    let name = problem.parameters()[which].name;
+    let name = &problem.parameters()[which].name;
     let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
-    for branch in branches.iter().filter(|b| b.parameter == name) {
+    for branch in branches.iter().filter(|b| b.parameter == *name) {
         for p in branch.points.iter().map(|point| point.p) {
             (lo, hi) = (lo.min(p), hi.max(p));
         }

@@ -2,6 +2,7 @@
 
 use super::Watch;
 use super::hermite::Cubic;
+use crate::name::Name;
 use crate::step::{Refusal, State};
 
 /// A special point somewhere within a step.
@@ -141,7 +142,7 @@ impl Detector {
     /// The first unknown observable.
     pub(crate) fn new(
         watches: &[Watch],
-        observables: &[&'static str],
+        observables: &[Name],
         target: Option<f64>,
         domain: Option<(f64, f64)>,
         extended: Option<Beside>,
@@ -280,56 +281,69 @@ impl Detector {
         }
         for k in 0..self.watched.len() {
             let candidate = self.watched[k];
-            let hit = match candidate {
-                Candidate::Value { observable, level, .. } => {
-                    let cubic = self.cubic(a, b, observable, level, h);
-                    if !final_say && self.unresolved(&cubic, observable, cubic.hides_zeros()) {
-                        return Err(Refusal::Unresolved);
-                    }
-                    let noise = NOISE * self.magnitude[observable];
-                    crosses(cubic.g[0], cubic.g[1])
-                        && cubic.g[0].abs().max(cubic.g[1].abs()) > noise
-                }
-                Candidate::Extremum { observable } => {
-                    let cubic = self.cubic(a, b, observable, 0.0, h);
-                    if !final_say && self.unresolved(&cubic, observable, cubic.hides_extrema()) {
-                        return Err(Refusal::Unresolved);
-                    }
-                    let noise = 10.0 * NOISE * self.magnitude[observable];
-                    crosses(cubic.s[0], cubic.s[1])
-                        && h * cubic.s[0].abs().max(cubic.s[1].abs()) > noise
-                }
-                Candidate::Parameter { value, .. } => {
-                    crosses(a.p - value, b.p - value)
-                        // the start itself does not count
-                        || (fold && p.extrema().into_iter().flatten().any(|x| {
-                            crosses(a.p - value, p.value(x) - value)
-                        }))
-                }
-                Candidate::Fold
-                | Candidate::BranchPoint { .. }
-                | Candidate::Hopf
-                | Candidate::RealEigenvalue
-                | Candidate::Infinite
-                | Candidate::Stability { .. } => false,
-            };
-            if hit {
+            if self.is_hit(&candidate, (a, b), &p, fold, final_say)? {
                 self.found.push(candidate);
             }
         }
+        if final_say || !self.are_several() { Ok(()) } else { Err(Refusal::SeveralEvents) }
+    }
+
+    /// Whether something that is watched lies between the ends; `p` is the parameter between them, which turns in a
+    /// `fold`.
+    fn is_hit(
+        &self,
+        candidate: &Candidate,
+        (a, b): (&State, &State),
+        p: &Cubic,
+        fold: bool,
+        final_say: bool,
+    ) -> Result<bool, Refusal> {
+        let h = p.h;
+        match *candidate {
+            Candidate::Value { observable, level, .. } => {
+                let cubic = self.cubic(a, b, observable, level, h);
+                if !final_say && self.unresolved(&cubic, observable, cubic.hides_zeros()) {
+                    return Err(Refusal::Unresolved);
+                }
+                let noise = NOISE * self.magnitude[observable];
+                Ok(crosses(cubic.g[0], cubic.g[1])
+                    && cubic.g[0].abs().max(cubic.g[1].abs()) > noise)
+            }
+            Candidate::Extremum { observable } => {
+                let cubic = self.cubic(a, b, observable, 0.0, h);
+                if !final_say && self.unresolved(&cubic, observable, cubic.hides_extrema()) {
+                    return Err(Refusal::Unresolved);
+                }
+                let noise = 10.0 * NOISE * self.magnitude[observable];
+                Ok(crosses(cubic.s[0], cubic.s[1])
+                    && h * cubic.s[0].abs().max(cubic.s[1].abs()) > noise)
+            }
+            Candidate::Parameter { value, .. } => {
+                let turns = || p.extrema().into_iter().flatten();
+                // the start itself does not count
+                Ok(crosses(a.p - value, b.p - value)
+                    || fold && turns().any(|x| crosses(a.p - value, p.value(x) - value)))
+            }
+            Candidate::Fold
+            | Candidate::BranchPoint { .. }
+            | Candidate::Hopf
+            | Candidate::RealEigenvalue
+            | Candidate::Infinite
+            | Candidate::Stability { .. } => Ok(false),
+        }
+    }
+
+    /// Whether more than one singular point was found. A pitchfork met from its side is both a fold and a branch
+    /// point, and an extremum of everything that is the same on its two sides.
+    fn are_several(&self) -> bool {
         let singular = self.found.iter().filter(|c| c.is_singular()).count();
-        // a pitchfork met from its side is both a fold and a branch point, and an extremum of
-        // everything that is the same on its two sides
-        let extremum = |c: &Candidate| matches!(c, Candidate::Extremum { .. });
-        let pitchfork = singular == 2 + self.found.iter().filter(|c| extremum(c)).count()
+        let extremum = |c: &&Candidate| matches!(c, Candidate::Extremum { .. });
+        let pitchfork = singular == 2 + self.found.iter().filter(extremum).count()
             && matches!(
                 self.found[..],
                 [Candidate::Fold, Candidate::BranchPoint { kernel: 1 }, ..]
             );
-        if !final_say && singular > 1 && !pitchfork {
-            return Err(Refusal::SeveralEvents);
-        }
-        Ok(())
+        singular > 1 && !pitchfork
     }
 
     /// Branch points and Hopf points, by what changes between the ends.

@@ -5,7 +5,7 @@ use super::{Facts, Matrix, OutsidePattern, Spectrum, SymmetricPart};
 use std::any::Any;
 
 /// The operations of a [`Matrix`] whose type is known to itself alone.
-trait Operations: Any + Send {
+trait Operations: Any + Send + Sync {
     fn copy(&self) -> Box<dyn Operations>;
     fn dim(&self) -> usize;
     fn set_zero(&mut self);

@@ -100,7 +100,7 @@ pub struct SymmetricPart {
 ///
 /// All vectors have length [`Matrix::dim`]. Nothing fails: a singular matrix is factored with its
 /// small pivots replaced, and [`Facts::perturbed`] says so.
-pub trait Matrix: Clone + Send + 'static {
+pub trait Matrix: Clone + Send + Sync + 'static {
     /// Number of rows and columns.
     fn dim(&self) -> usize;
     /// Sets all entries to zero, keeping the pattern. Factors stay.

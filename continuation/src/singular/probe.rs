@@ -59,6 +59,7 @@ pub(super) struct Bending {
 }
 
 /// Evaluates a problem near a point; allocated when a special point is analysed.
+#[derive(Clone)]
 pub(crate) struct Probe<'a> {
     pub(crate) problem: Held<'a>,
     pub(crate) which: ParamId,

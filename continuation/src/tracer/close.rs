@@ -71,8 +71,8 @@ impl Tracer<'_> {
         )
     }
 
-    pub(super) fn place(&self) -> (&'static str, f64) {
-        (self.core.problem.parameters()[self.core.which.0].name, self.current.p)
+    pub(super) fn place(&self) -> (&str, f64) {
+        (&self.core.problem.parameters()[self.core.which.0].name, self.current.p)
     }
 }
 

@@ -44,6 +44,7 @@ pub(crate) use snapshot::Snapshot;
 use crate::any_problem::Held;
 use crate::branch::{Branch, Doubt, Event, Point, Statistics, Stop, StopReason};
 use crate::events::{Detector, Hidden, Plateau, Stretch, Watch};
+use crate::name::Name;
 use crate::newton::{self, NewtonSettings};
 use crate::problem::{EvalError, ParamId, Problem};
 use crate::settings::{Settings, SettingsError};
@@ -150,7 +151,7 @@ impl<'a> Tracer<'a> {
         let n = problem.dim();
         let parameters = problem.parameters();
         let Some(which) = parameters.iter().position(|q| q.name == parameter) else {
-            let known = parameters.iter().map(|q| q.name).collect::<Vec<_>>().join(", ");
+            let known = crate::name::listed(parameters);
             return Err(TraceError::UnknownParameter { name: parameter.to_owned(), known });
         };
         check("the starting state", u, n)?;
@@ -335,9 +336,9 @@ impl<'a> Tracer<'a> {
         let stopped =
             self.stop.unwrap_or(Stop { reason: StopReason::Interrupted, detail: String::new() });
         Branch {
-            parameter: problem.parameters()[self.core.which.0].name.to_owned(),
+            parameter: problem.parameters()[self.core.which.0].name.to_string(),
             parameters: self.start_p,
-            observables: problem.observables().iter().map(|&s| s.to_owned()).collect(),
+            observables: problem.observables().iter().map(Name::to_string).collect(),
             points,
             events: self.events,
             doubts: self.doubts,

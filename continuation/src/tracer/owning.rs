@@ -4,7 +4,7 @@ use super::{TraceError, Tracer};
 use crate::any_problem::Held;
 use crate::problem::Problem;
 use crate::settings::Settings;
-use std::rc::Rc;
+use std::sync::Arc;
 
 impl<'a> Tracer<'a> {
     /// [`Tracer::new`] of a problem that the tracer keeps: it may be returned, and stored beside other things.
@@ -31,6 +31,6 @@ impl<'a> Tracer<'a> {
         p: &[f64],
         settings: Settings,
     ) -> Result<Self, TraceError> {
-        Self::of(Held::Shared(Rc::new(problem)), parameter, u, p, settings)
+        Self::of(Held::Shared(Arc::new(problem)), parameter, u, p, settings)
     }
 }

@@ -509,7 +509,7 @@ impl Tracer<'_> {
                 return special;
             }
         }
-        let name = |observable: usize| self.core.problem.observables()[observable].to_owned();
+        let name = |observable: usize| self.core.problem.observables()[observable].to_string();
         match *candidate {
             Candidate::Fold => Some(EventKind::Fold),
             Candidate::BranchPoint { .. } => Some(EventKind::BranchPoint),

@@ -29,7 +29,7 @@ impl Tracer<'_> {
         }
         let away = self.core.excursion(&x.u, &self.start.u);
         if away > UNBOUNDED * self.extent {
-            let name = self.core.problem.parameters()[self.core.which.0].name;
+            let name = &self.core.problem.parameters()[self.core.which.0].name;
             let detail = format!(
                 "the unknowns grow without bound as {name} tends to {:.8}: they are {:.0e} times \
                  as large as at the start",

@@ -8,30 +8,27 @@ use continuation::{
     Branch, EvalError, Matrix, NewtonError, Parameter, Problem, Settings, Stability, StopReason,
     TraceError, Tracer, newton,
 };
-use std::cell::Cell;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-const PARAMETERS: [Parameter; 1] = [Parameter { name: "p", unit: "", scale: 1.0 }];
+static PARAMETERS: [Parameter; 1] = [Parameter::new("p", "", 1.0)];
 
 /// `x' = p x − x³`, `y' = (x² − ½) y − y³`, of which only so many evaluations are to be had.
 struct Patient {
-    left: Cell<usize>,
-    refused: Cell<usize>,
+    left: AtomicUsize,
+    refused: AtomicUsize,
 }
 
 impl Patient {
     fn new(evaluations: usize) -> Self {
-        Patient { left: Cell::new(evaluations), refused: Cell::new(0) }
+        Patient { left: evaluations.into(), refused: 0.into() }
     }
     fn ask(&self) -> Result<(), EvalError> {
-        match self.left.get().checked_sub(1) {
-            Some(left) => self.left.set(left),
-            None => {
-                self.refused.set(self.refused.get() + 1);
-                return Err(EvalError::Aborted);
-            }
-        }
-        Ok(())
+        let granted = self.left.fetch_update(Relaxed, Relaxed, |left| left.checked_sub(1));
+        granted.map(|_| ()).map_err(|_| {
+            self.refused.fetch_add(1, Relaxed);
+            EvalError::Aborted
+        })
     }
 }
 
@@ -82,13 +79,13 @@ fn a_trace_ends_at_once_and_keeps_its_points() {
     let patient = Patient::new(PLENTY);
     let whole = trace(&patient).unwrap();
     assert_eq!(whole.stopped.reason, StopReason::Target);
-    let needed = PLENTY - patient.left.get();
+    let needed = PLENTY - patient.left.load(Relaxed);
     let (mut begun, mut most) = (0, 0);
     for evaluations in 0..needed {
         let problem = Patient::new(evaluations);
         let Ok(part) = trace(&problem) else { continue };
         begun += 1;
-        most = most.max(problem.refused.get());
+        most = most.max(problem.refused.load(Relaxed));
         assert_eq!(part.stopped.reason, StopReason::Interrupted, "after {evaluations}");
         for (point, whole) in part.points.iter().zip(&whole.points) {
             assert_eq!((point.s, point.p, &point.u), (whole.s, whole.p, &whole.u));
@@ -111,11 +108,15 @@ fn a_step_away_from_a_branch_point_ends_at_once() {
     };
     let patient = Patient::new(PLENTY);
     leave(&patient).unwrap();
-    for evaluations in 0..PLENTY - patient.left.get() {
+    for evaluations in 0..PLENTY - patient.left.load(Relaxed) {
         let problem = Patient::new(evaluations);
         let Ok(fork) = leave(&problem) else { continue };
         assert_eq!(fork.stopped.reason, StopReason::Interrupted, "after {evaluations}");
-        assert!(problem.refused.get() <= FEW, "asked {} times more", problem.refused.get());
+        assert!(
+            problem.refused.load(Relaxed) <= FEW,
+            "asked {} times more",
+            problem.refused.load(Relaxed)
+        );
     }
 }
 
@@ -129,7 +130,7 @@ fn a_diagram_keeps_its_branches() {
     let patient = Patient::new(PLENTY);
     let whole = run(&patient);
     assert_eq!(whole.branches.len(), 7);
-    let half = run(&Patient::new((PLENTY - patient.left.get()) / 2));
+    let half = run(&Patient::new((PLENTY - patient.left.load(Relaxed)) / 2));
     assert_eq!(half.stopped, DiagramStop::Interrupted);
     let finished = half.branches.len() - 1;
     assert!(finished > 0 && finished < 6);
@@ -145,6 +146,6 @@ fn newton_tries_no_shorter_step() {
         else {
             panic!("{error}");
         };
-        assert_eq!((cause, problem.refused.get()), (EvalError::Aborted, 1));
+        assert_eq!((cause, problem.refused.load(Relaxed)), (EvalError::Aborted, 1));
     }
 }

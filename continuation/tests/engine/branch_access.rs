@@ -116,7 +116,9 @@ const TURN: f64 = 0.7;
 
 /// `g(x, y, p)` in turned unknowns.
 #[allow(clippy::type_complexity, reason = "a residual has this type")]
-fn turned(g: impl Fn(f64, f64, f64) -> (f64, f64) + 'static) -> DenseProblem<BoxedResidual> {
+fn turned(
+    g: impl Fn(f64, f64, f64) -> (f64, f64) + Send + Sync + 'static,
+) -> DenseProblem<BoxedResidual> {
     let (c, s) = (TURN.cos(), TURN.sin());
     DenseProblem::from_residual(2, &["p"], move |u, p, r| {
         let (a, b) = g(c * u[0] + s * u[1], -s * u[0] + c * u[1], p[0]);

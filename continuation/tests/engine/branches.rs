@@ -78,7 +78,7 @@ impl Problem for Circle {
         1
     }
     fn parameters(&self) -> &[Parameter] {
-        &[Parameter { name: "p", unit: "", scale: 1.0 }]
+        const { &[Parameter::new("p", "", 1.0)] }
     }
     fn new_jacobian(&self) -> Dense {
         Dense::new(1)

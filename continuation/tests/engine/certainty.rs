@@ -19,7 +19,7 @@ impl Problem for Linear {
         self.a.dim()
     }
     fn parameters(&self) -> &[Parameter] {
-        &[Parameter { name: "p", unit: "", scale: 1.0 }]
+        const { &[Parameter::new("p", "", 1.0)] }
     }
     fn new_jacobian(&self) -> Dense {
         Dense::new(self.dim())

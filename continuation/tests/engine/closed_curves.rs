@@ -57,13 +57,7 @@ impl Problem for Ellipse {
 
 fn ellipse(radius: f64, aspect: f64, angle: f64, (u0, p0): (f64, f64)) -> Branch {
     let r2 = radius * radius;
-    let problem = Ellipse {
-        r2,
-        aspect,
-        u0,
-        p0,
-        parameters: vec![Parameter { name: "p", unit: "", scale: 1.0 }],
-    };
+    let problem = Ellipse { r2, aspect, u0, p0, parameters: vec![Parameter::new("p", "", 1.0)] };
     let settings = Settings { domain: Some((p0 - 1.0, p0 + 1.0)), ..Settings::default() };
     let start = (u0 + aspect * radius * angle.sin(), p0 + radius * angle.cos());
     Tracer::new(&problem, "p", &[start.0], &[start.1], settings)

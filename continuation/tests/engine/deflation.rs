@@ -76,7 +76,7 @@ struct Chebyshev(Vec<Parameter>);
 
 impl Chebyshev {
     fn new() -> Self {
-        Chebyshev(vec![Parameter { name: "p", unit: "", scale: 1.0 }])
+        Chebyshev(vec![Parameter::new("p", "", 1.0)])
     }
 
     fn value_and_slope(x: f64) -> (f64, f64) {

@@ -18,7 +18,7 @@ fn within(lo: f64, hi: f64) -> DiagramSettings {
 }
 
 fn explore<P: Problem>(problem: &P, u: &[f64], p: &[f64], settings: DiagramSettings) -> Diagram {
-    let name = problem.parameters()[0].name;
+    let name = &problem.parameters()[0].name;
     let explorer = Explorer::new(problem, name, u, p, settings, &[]).unwrap();
     explorer.run(&mut |_| ControlFlow::Continue(())).unwrap()
 }
@@ -245,7 +245,7 @@ impl Problem for Chain {
     }
 
     fn parameters(&self) -> &[Parameter] {
-        &[Parameter { name: "p", unit: "", scale: 1.0 }]
+        const { &[Parameter::new("p", "", 1.0)] }
     }
 
     fn new_jacobian(&self) -> Dense {

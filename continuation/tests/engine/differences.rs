@@ -277,7 +277,7 @@ impl Problem for Half {
 
 #[test]
 fn the_derivative_by_a_parameter_is_a_default() {
-    let problem = Half(vec![continuation::Parameter { name: "p", unit: "", scale: 1.0 }]);
+    let problem = Half(vec![continuation::Parameter::new("p", "", 1.0)]);
     let mut out = [0.0];
     for p in [-3.0, 0.0, 1e-9, 2.0, 5.0] {
         problem.parameter_derivative(&[0.5], &[p], ParamId(0), &mut out).unwrap();
@@ -318,7 +318,7 @@ impl Problem for Broken {
 
 #[test]
 fn a_jacobian_without_a_value_is_not_called_singular() {
-    let problem = Broken(Half(vec![continuation::Parameter { name: "p", unit: "", scale: 1.0 }]));
+    let problem = Broken(Half(vec![continuation::Parameter::new("p", "", 1.0)]));
     let settings = Settings { target: Some(2.0), ..Settings::default() };
     let error = Tracer::new(&problem, "p", &[0.5], &[1.0], settings).err().unwrap();
     assert!(error.to_string().contains("row 0 of the Jacobian is not finite"), "{error}");

@@ -23,7 +23,7 @@ fn explore<P: Problem>(
     settings: &Settings,
     values: &[f64],
 ) -> Vec<Branch> {
-    let name = problem.parameters()[0].name;
+    let name = &problem.parameters()[0].name;
     let mut go_on = |_: &_| ControlFlow::Continue(());
     let search = DeflationSettings::default();
     let first = both_ways(problem, name, u, p, settings.clone(), &[], &mut go_on).unwrap();

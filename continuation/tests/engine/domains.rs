@@ -8,33 +8,43 @@ use continuation::{
     Branch, EvalError, EventKind, Matrix, ParamId, Parameter, Problem, Settings, StopReason,
     Tracer, both_ways,
 };
-use std::cell::Cell;
 use std::ops::ControlFlow;
+use std::sync::Mutex;
 
-const PARAMETERS: [Parameter; 1] = [Parameter { name: "p", unit: "", scale: 1.0 }];
+static PARAMETERS: [Parameter; 1] = [Parameter::new("p", "", 1.0)];
+
+const NONE: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
 /// `f(u, p) = 0` with `f`, `f_u` and `f_p` in closed form, and the parameters that were asked for.
 struct Asked<F> {
     f: F,
-    lowest: Cell<f64>,
-    highest: Cell<f64>,
+    /// The lowest and the highest.
+    range: Mutex<(f64, f64)>,
 }
 
-impl<F: Fn(f64, f64) -> [f64; 3]> Asked<F> {
+impl<F: Fn(f64, f64) -> [f64; 3] + Send + Sync> Asked<F> {
     fn new(f: F) -> Self {
-        Asked { f, lowest: Cell::new(f64::INFINITY), highest: Cell::new(f64::NEG_INFINITY) }
+        Asked { f, range: Mutex::new(NONE) }
     }
     fn value(&self, u: f64, p: f64) -> [f64; 3] {
-        self.lowest.set(self.lowest.get().min(p));
-        self.highest.set(self.highest.get().max(p));
+        let mut range = self.range.lock().unwrap();
+        *range = (range.0.min(p), range.1.max(p));
+        drop(range);
         (self.f)(u, p)
     }
+    fn range(&self) -> (f64, f64) {
+        *self.range.lock().unwrap()
+    }
+    fn forget(&self) {
+        *self.range.lock().unwrap() = NONE;
+    }
     fn inside(&self, (lo, hi): (f64, f64)) -> bool {
-        lo <= self.lowest.get() && self.highest.get() <= hi
+        let (lowest, highest) = self.range();
+        lo <= lowest && highest <= hi
     }
 }
 
-impl<F: Fn(f64, f64) -> [f64; 3]> Problem for Asked<F> {
+impl<F: Fn(f64, f64) -> [f64; 3] + Send + Sync> Problem for Asked<F> {
     type Jacobian = Dense;
     fn dim(&self) -> usize {
         1
@@ -90,12 +100,7 @@ fn no_parameter_outside_is_asked_for() {
             [d + d.powi(3), 1.0 + 3.0 * d * d, -(1.0 + 3.0 * d * d) * slope]
         });
         let branch = both(&problem, g(start)[0], start, domain);
-        assert!(
-            problem.inside(domain),
-            "{case}: {} {}",
-            problem.lowest.get(),
-            problem.highest.get()
-        );
+        assert!(problem.inside(domain), "{case}: {:?}", problem.range());
         let reasons = [branch.began.unwrap().reason, branch.stopped.reason];
         let slow = case == 0; // the slope at zero is infinite
         assert!(slow || reasons == [StopReason::Domain; 2], "{case}: {reasons:?}");
@@ -131,7 +136,7 @@ fn folds_near_a_bound() {
         }
         // differences for the fold's curvature reach a little beyond it
         let reach = if folds == 1 { 0.02 } else { 0.0 };
-        assert!(problem.inside((domain.0, domain.1 + reach)), "{case} {}", problem.highest.get());
+        assert!(problem.inside((domain.0, domain.1 + reach)), "{case} {:?}", problem.range());
     }
 }
 
@@ -151,8 +156,7 @@ fn diagrams_stay_inside() {
     let points = diagram.branches.iter().flat_map(|b| &b.branch.points);
     assert!(points.clone().count() > 30 && points.clone().all(|x| (0.2..=1.7).contains(&x.p)));
     for branch in &diagram.branches[1..] {
-        problem.lowest.set(f64::INFINITY);
-        problem.highest.set(f64::NEG_INFINITY);
+        problem.forget();
         let end = branch.branch.points.last().unwrap();
         let settings = Settings { domain: Some(domain), ..Settings::default() };
         let settings = Settings { increasing: Some(end.p < 1.0), ..settings };
@@ -160,6 +164,6 @@ fn diagrams_stay_inside() {
             .unwrap()
             .take(3)
             .count();
-        assert!(problem.inside(domain), "{} {}", problem.lowest.get(), problem.highest.get());
+        assert!(problem.inside(domain), "{:?}", problem.range());
     }
 }

@@ -9,7 +9,7 @@ use continuation::{
 };
 use std::ops::ControlFlow;
 
-type Values = dyn Fn(&[f64], f64) -> Vec<f64>;
+type Values = dyn Fn(&[f64], f64) -> Vec<f64> + Send + Sync;
 
 /// Residual, Jacobian by rows and parameter derivative in closed form.
 struct Exact {
@@ -23,14 +23,14 @@ struct Exact {
 impl Exact {
     fn new(
         n: usize,
-        residual: impl Fn(&[f64], f64) -> Vec<f64> + 'static,
-        jacobian: impl Fn(&[f64], f64) -> Vec<f64> + 'static,
-        slope: impl Fn(&[f64], f64) -> Vec<f64> + 'static,
+        residual: impl Fn(&[f64], f64) -> Vec<f64> + Send + Sync + 'static,
+        jacobian: impl Fn(&[f64], f64) -> Vec<f64> + Send + Sync + 'static,
+        slope: impl Fn(&[f64], f64) -> Vec<f64> + Send + Sync + 'static,
     ) -> Self {
         let (residual, jacobian) = (Box::new(residual), Box::new(jacobian));
         Exact {
             n,
-            parameters: [Parameter { name: "p", unit: "", scale: 1.0 }],
+            parameters: [Parameter::new("p", "", 1.0)],
             residual,
             jacobian,
             slope: Box::new(slope),

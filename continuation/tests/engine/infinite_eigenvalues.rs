@@ -9,7 +9,7 @@ use continuation::{
 };
 use std::ops::ControlFlow;
 
-const PARAMETERS: [Parameter; 1] = [Parameter { name: "p", unit: "", scale: 1.0 }];
+static PARAMETERS: [Parameter; 1] = [Parameter::new("p", "", 1.0)];
 
 /// `x' = p − z`, `ε z' = x − z³/3 + z`; units of both unknowns and both equations.
 struct Relaxation {

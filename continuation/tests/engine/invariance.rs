@@ -30,7 +30,7 @@ fn compare<P: Problem>(make: impl Fn() -> P, u: &[f64], p: f64, target: f64, sid
     let trace = |(a, b, c): (f64, f64, f64)| {
         let problem = Scaled::new(make(), a, b, &[c]);
         let u: Vec<f64> = u.iter().map(|x| x * b).collect();
-        let name = problem.parameters()[0].name;
+        let name = &problem.parameters()[0].name;
         let settings = Settings { target: Some(target * c), ..Settings::default() };
         let branch = Tracer::new(&problem, name, &u, &[p * c], settings.clone())
             .unwrap()
@@ -128,7 +128,7 @@ impl Problem for Buckling {
         self.n
     }
     fn parameters(&self) -> &[Parameter] {
-        &[Parameter { name: "load", unit: "", scale: 1.0 }]
+        const { &[Parameter::new("load", "", 1.0)] }
     }
     fn new_jacobian(&self) -> Dense {
         Dense::new(self.n)

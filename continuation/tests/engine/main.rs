@@ -37,6 +37,7 @@ mod random_polynomials;
 mod reported;
 mod scaled;
 mod separate_hessian;
+mod shared;
 mod singular_problems;
 mod skipped_pairs;
 mod starts;

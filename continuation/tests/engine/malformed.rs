@@ -4,8 +4,8 @@
 
 use continuation::linalg::{Arrow, Band, Bordered, Dense, OutsidePattern, SymmetricBand};
 use continuation::{
-    DenseProblem, EvalError, Matrix, NewtonError, ParamId, Parameter, Problem, ProblemError,
-    Settings, StopReason, TraceError, Tracer, newton,
+    DenseProblem, EvalError, Matrix, Name, NewtonError, ParamId, Parameter, Problem, ProblemError,
+    Settings, StopReason, TraceError, Tracer, names, newton,
 };
 use std::ops::ControlFlow;
 
@@ -14,7 +14,7 @@ fn error<P: Problem>(problem: &P, u: &[f64], p: &[f64]) -> TraceError {
     Tracer::new(problem, "p", u, p, settings).err().unwrap()
 }
 
-const PARAMETERS: [Parameter; 1] = [Parameter { name: "p", unit: "", scale: 1.0 }];
+static PARAMETERS: [Parameter; 1] = [Parameter::new("p", "", 1.0)];
 
 /// `f_i = p − u_i` in a matrix of any type, with faults.
 struct Simple<A> {
@@ -71,8 +71,8 @@ impl<A: Matrix> Problem for Simple<A> {
             y.copy_from_slice(x);
         }
     }
-    fn observables(&self) -> &[&'static str] {
-        &["first"]
+    fn observables(&self) -> &[Name] {
+        names!["first"]
     }
     fn observe(&self, u: &[f64], _p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
         if self.observes {
@@ -91,7 +91,7 @@ fn sizes() {
     let wrong = |n: usize| Dense::new(n + 1);
     let problem = Simple::new(2, wrong, |_, _| {});
     let expected = ProblemError::JacobianSize { got: 3, expected: 2 };
-    assert_eq!(error(&problem, &[1.0, 1.0], &[1.0]), TraceError::Problem(expected));
+    assert_eq!(error(&problem, &[1.0, 1.0], &[1.0]), TraceError::Problem(expected.clone()));
     let mut u = [1.0, 1.0];
     let found = newton(&problem, &mut u, &[1.0], &Default::default());
     assert_eq!(found, Err(NewtonError::Problem(expected)));
@@ -142,7 +142,9 @@ fn nothing_to_solve() {
             .boxed()
             .with_scale(ParamId(0), scale);
         let found = error(&problem, &[0.0], &[0.0]);
-        assert!(matches!(found, TraceError::Problem(ProblemError::Scale { parameter: "p", .. })));
+        assert!(
+            matches!(found, TraceError::Problem(ProblemError::Scale { parameter, .. }) if parameter == "p")
+        );
     }
 }
 

@@ -13,7 +13,7 @@ use scaled::{SCALES, Scaled};
 use std::ops::ControlFlow;
 
 fn trace<P: Problem>(problem: &P, u: &[f64], p: &[f64], settings: Settings) -> Branch {
-    let name = problem.parameters()[0].name;
+    let name = &problem.parameters()[0].name;
     Tracer::new(problem, name, u, p, settings).unwrap().run(&mut |_| ControlFlow::Continue(()))
 }
 

@@ -187,7 +187,7 @@ fn events(
     n: usize,
     start: f64,
     steps: (Option<f64>, Option<f64>),
-    f: impl Fn(&[f64], &[f64], &mut [f64]) + 'static,
+    f: impl Fn(&[f64], &[f64], &mut [f64]) + Send + Sync + 'static,
 ) -> Vec<(String, f64, Option<usize>, Option<usize>)> {
     let problem = DenseProblem::from_residual(n, &["p"], f).boxed();
     let settings = Settings {
@@ -348,7 +348,7 @@ fn assembly_that_forgets_what_was_there() {
             1
         }
         fn parameters(&self) -> &[Parameter] {
-            &[Parameter { name: "p", unit: "", scale: 1.0 }]
+            const { &[Parameter::new("p", "", 1.0)] }
         }
         fn new_jacobian(&self) -> Dense {
             Dense::new(1)

@@ -65,7 +65,7 @@ impl Problem for Held {
 
 #[test]
 fn modes_change_where_the_jacobian_is_regular_and_stay_at_a_fold() {
-    let problem = Held([Parameter { name: "p", unit: "", scale: 1.0 }]);
+    let problem = Held([Parameter::new("p", "", 1.0)]);
     for step in [0.01, 0.1, 1.0] {
         let settings = Settings {
             increasing: Some(true),

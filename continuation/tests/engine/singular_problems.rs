@@ -82,7 +82,7 @@ fn symmetries_that_move_solutions() {
     deficient(&free, &[0.0, 1.5], 0.0, 1.0, 1);
 }
 
-const PARAMETERS: [Parameter; 1] = [Parameter { name: "p", unit: "", scale: 1.0 }];
+static PARAMETERS: [Parameter; 1] = [Parameter::new("p", "", 1.0)];
 
 /// `½|u|² − p u₁` with the constraint `u₁ + u₂ = 1`, once or twice, its multipliers at the end.
 struct Constrained(usize);

@@ -89,10 +89,7 @@ impl<J: Entries> Problem for Brusselator<J> {
     }
 
     fn parameters(&self) -> &[Parameter] {
-        &[
-            Parameter { name: "B", unit: "", scale: 1.0 },
-            Parameter { name: "L", unit: "", scale: 1.0 },
-        ]
+        const { &[Parameter::new("B", "", 1.0), Parameter::new("L", "", 1.0)] }
     }
 
     fn new_jacobian(&self) -> J {
@@ -172,7 +169,7 @@ pub(crate) fn follow<P: Problem>(problem: &P, u: &[f64], start: f64, end: f64) -
     let settings = Settings { target: Some(end), ..Settings::default() };
     let mut p = vec![1.0; problem.parameters().len()];
     p[0] = start;
-    Tracer::new(problem, problem.parameters()[0].name, u, &p, settings)
+    Tracer::new(problem, &problem.parameters()[0].name, u, &p, settings)
         .unwrap()
         .run(&mut |_| ControlFlow::Continue(()))
 }
@@ -238,7 +235,7 @@ impl<J: Entries> Problem for Square<J> {
     }
 
     fn parameters(&self) -> &[Parameter] {
-        &[Parameter { name: "lambda", unit: "", scale: 1.0 }]
+        const { &[Parameter::new("lambda", "", 1.0)] }
     }
 
     fn new_jacobian(&self) -> J {
@@ -361,7 +358,7 @@ macro_rules! chain {
                 self.links + 1
             }
             fn parameters(&self) -> &[Parameter] {
-                &[Parameter { name: "load", unit: "", scale: 1.0 }]
+                const { &[Parameter::new("load", "", 1.0)] }
             }
             fn new_jacobian(&self) -> $matrix {
                 $new(self.links)
@@ -457,7 +454,7 @@ impl Problem for Algebraic {
     }
 
     fn parameters(&self) -> &[Parameter] {
-        &[Parameter { name: "p", unit: "", scale: 1.0 }]
+        const { &[Parameter::new("p", "", 1.0)] }
     }
 
     fn new_jacobian(&self) -> Dense {

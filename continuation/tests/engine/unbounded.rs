@@ -8,7 +8,11 @@ use std::ops::ControlFlow;
 use crate::random;
 use random::Random;
 
-fn follow(f: impl Fn(f64, f64) -> f64 + 'static, (u, p): (f64, f64), settings: Settings) -> Branch {
+fn follow(
+    f: impl Fn(f64, f64) -> f64 + Send + Sync + 'static,
+    (u, p): (f64, f64),
+    settings: Settings,
+) -> Branch {
     let problem =
         DenseProblem::from_residual(1, &["p"], move |u, p, r| r[0] = f(u[0], p[0])).boxed();
     Tracer::new(&problem, "p", &[u], &[p], settings)

@@ -6,7 +6,7 @@ use continuation::{Branch, DenseProblem, EventKind, Settings, StopReason, Tracer
 use std::ops::ControlFlow;
 
 /// `u = p` from −1 to 1, on which `g` is observed.
-fn line(g: impl Fn(f64) -> f64 + 'static, watches: &[Watch]) -> Branch {
+fn line(g: impl Fn(f64) -> f64 + Send + Sync + 'static, watches: &[Watch]) -> Branch {
     let problem = DenseProblem::from_residual(1, &["p"], |u, p, r| r[0] = u[0] - p[0])
         .boxed()
         .observing("g", move |u, _| g(u[0]));
@@ -42,7 +42,7 @@ fn poles_and_jumps_are_no_zeros() {
         let size = 10_f64.powf(6.0 * random.next() - 3.0);
         let z = if c > 0.0 { c - 0.7 } else { c + 0.7 };
         let watches = [Watch::zero("g")];
-        type G = Box<dyn Fn(f64) -> f64>;
+        type G = Box<dyn Fn(f64) -> f64 + Send + Sync>;
         let none: [G; 5] = [
             Box::new(move |u| size / (u - c)),
             Box::new(move |u| size / (u - c).powi(3)),

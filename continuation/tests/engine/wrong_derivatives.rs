@@ -26,7 +26,7 @@ enum Fault {
     NotANumber,
 }
 
-const PARAMETERS: [Parameter; 1] = [Parameter { name: "p", unit: "", scale: 1.0 }];
+static PARAMETERS: [Parameter; 1] = [Parameter::new("p", "", 1.0)];
 
 /// A chain `a u_i + b u_{i−1} + c u_i u_{i+1} + e^{d u_i} − 1 = p w_i` in units of its own.
 struct Chain {

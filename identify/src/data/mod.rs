@@ -5,29 +5,8 @@ pub mod read;
 mod table;
 
 pub use read::read;
+pub use shell_contact::device::Direction;
 pub use table::Layout;
-
-use serde::{Deserialize, Serialize};
-
-/// Which way the plates go.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Direction {
-    /// Closing.
-    Approach,
-    /// Opening.
-    Retract,
-}
-
-impl Direction {
-    /// Its name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Direction::Approach => "approach",
-            Direction::Retract => "retract",
-        }
-    }
-}
 
 /// A part of a curve, in the order of time.
 #[derive(Debug, Clone, PartialEq)]

@@ -14,11 +14,12 @@ use crate::data::{Curve, Direction, median};
 use crate::error::FitError;
 use crate::lever::LeverBranch;
 use crate::model::Model;
-use crate::parameters::{Key, LawName, Parameters};
+use crate::parameters::{Key, Parameters};
 use descent::{BOLD, CAREFUL, Limits, Minimum, descend, descend_from};
 use nalgebra::DVector;
 use objective::{DerivedPrior, Objective, Prior, Residuals};
 use search::search;
+use shell_contact::LawName;
 use starts::{AGAIN, Look, grid, look};
 use std::f64::consts::PI;
 

@@ -182,7 +182,7 @@ fn residuals(page: &mut String, outcome: &Outcome) {
         for (law, fit) in &outcome.laws {
             let words = match fit {
                 Ok(chi2) => format!("chi2/dof {chi2:.3}"),
-                Err(error) => escape(error),
+                Err(error) => escape(&error.to_string()),
             };
             let _ = writeln!(list, "<div><dt>law {}</dt><dd>{words}</dd></div>", law.name());
         }

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use study::case::PictureCase;
 use study::fit::files::{self as tables, FIT, FitsRow, TABLES, fit_json, fits_csv};
 use study::fit::plan::{PLAN, Plan};
-use study::fit::{Failure, Outcome, Source};
+use study::fit::{Outcome, Source};
 
 const FITS: &str = "fits.csv";
 const BATCH: &str = "fits.json";
@@ -41,10 +41,10 @@ pub fn plan(plan: &Plan) -> Results {
     Results::new(PLAN, plan.json())
 }
 
-/// What fits of many curves leave: the JSON alone unless files are wanted.
+/// What fits of many curves leave, or in words why a curve has none: the JSON alone unless files are wanted.
 pub fn fits(
     sources: &[Source],
-    outcomes: &[Result<Outcome, Failure>],
+    outcomes: &[Result<Outcome, String>],
     look: &PictureCase,
     wanted: Option<Wanted>,
 ) -> Results {
@@ -61,8 +61,8 @@ pub fn fits(
                 contents.push((name, outcome));
             }
             Err(failure) => {
-                rows.push(FitsRow::failed(&curve, failure.message()));
-                listed.push(json!({ "curve": curve, "error": failure.message() }));
+                rows.push(FitsRow::failed(&curve, failure));
+                listed.push(json!({ "curve": curve, "error": failure }));
             }
         }
     }

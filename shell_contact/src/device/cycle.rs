@@ -22,6 +22,16 @@ pub enum Direction {
     Retract,
 }
 
+impl Direction {
+    /// Its name, as in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Direction::Approach => "approach",
+            Direction::Retract => "retract",
+        }
+    }
+}
+
 /// What is travelled, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CycleSettings {
@@ -195,7 +205,39 @@ enum Stretch {
     Passed,
 }
 
-impl<P: Loading> Traveller<'_, P> {
+/// What a point is to the stretch that leads to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Reached {
+    /// A stable state, from which the path goes on.
+    Stable,
+    /// A special point with which stability is lost.
+    Loss,
+    /// An unstable state, without a special point before it.
+    Unstable,
+}
+
+/// Whether another branch may lead on from a point, and what the point is if none does.
+fn reached(point: &Point, event: Option<&Event>) -> (bool, Reached) {
+    let lost = event.and_then(|e| e.unstable_after).is_some_and(|n| n > 0);
+    let meets = event.is_some_and(|e| e.kind == EventKind::BranchPoint);
+    let turns = event
+        .is_some_and(|e| matches!(&e.detail, Detail::Crossing(crossing) if crossing.from_side));
+    judge(meets, turns, lost, point.unstable.is_some_and(|n| n > 0))
+}
+
+/// [`reached`], from whether the point is a branch point, its branch turns there, stability is lost with it, and its
+/// state is unstable.
+fn judge(branch_point: bool, turns: bool, lost: bool, unstable: bool) -> (bool, Reached) {
+    let reached = match (lost, unstable) {
+        // a state at the point may count as what lies behind it
+        (true, _) => Reached::Loss,
+        (false, true) => Reached::Unstable,
+        (false, false) => Reached::Stable,
+    };
+    (branch_point && (lost || turns), reached)
+}
+
+impl<'p, P: Loading> Traveller<'p, P> {
     fn legs(&mut self, observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Result<(), End> {
         let CycleSettings { start, end, .. } = *self.settings;
         for (from, to) in [(start, end), (end, start)] {
@@ -259,14 +301,26 @@ impl<P: Loading> Traveller<'_, P> {
         target: f64,
         observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Stretch, End> {
+        let mut tracer = self.tracer(target)?;
+        let followed = self.follow(&mut tracer, direction, target, observer);
+        self.cycle.newton_iterations += tracer.statistics().newton_iterations;
+        if let Some(stretch) = followed? {
+            return Ok(stretch);
+        }
+        match tracer.stopped() {
+            Some(stop) if stop.reason == StopReason::Target => Ok(Stretch::Target),
+            Some(stop) if stop.reason == StopReason::MaxPoints => Err(self.out_of_points()),
+            Some(stop) => Err(End::Stop(stop.clone())),
+            None => Err(End::stop(StopReason::Interrupted, String::new())),
+        }
+    }
+
+    /// The tracer of a stretch.
+    fn tracer(&self, target: f64) -> Result<Tracer<'p>, End> {
         let problem = self.problem;
-        let limit = self.settings.trace.max_points;
-        let left = limit.saturating_sub(self.cycle.points.len());
+        let left = self.settings.trace.max_points.saturating_sub(self.cycle.points.len());
         if left < 2 {
-            return Err(End::stop(
-                StopReason::MaxPoints,
-                format!("the limit of {limit} points was reached"),
-            ));
+            return Err(self.out_of_points());
         }
         let trace = Settings {
             target: Some(target),
@@ -278,18 +332,22 @@ impl<P: Loading> Traveller<'_, P> {
         let trace = device_settings(problem.device(), trace);
         let name = problem.device().parameter_name();
         let p = problem.parameters_at(self.parameter);
-        let tracer = Tracer::new(problem, name, &self.x, &p, trace)
-            .and_then(|tracer| tracer.watching(&device_watches(problem.device())));
-        let mut tracer = match tracer {
-            Ok(tracer) => tracer,
-            Err(error) if self.cycle.points.is_empty() => return Err(End::Error(error.into())),
-            Err(error) => {
-                let at = self.parameter;
-                let detail = format!("at {name} = {at:.10} the path does not go on: {error}");
-                return Err(End::stop(StopReason::StepTooSmall, detail));
-            }
-        };
-        let mut outcome = None;
+        Tracer::new(problem, name, &self.x, &p, trace)
+            .and_then(|tracer| tracer.watching(&device_watches(problem.device())))
+            .map_err(|error| match self.cycle.points.is_empty() {
+                true => End::Error(error.into()),
+                false => self.cannot_go_on(&format!("the path does not go on: {error}")),
+            })
+    }
+
+    /// Records the points of a stretch until one of them ends it; `None` where the tracer itself has ended.
+    fn follow(
+        &mut self,
+        tracer: &mut Tracer<'_>,
+        direction: Direction,
+        target: f64,
+        observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<Option<Stretch>, End> {
         let mut fresh = self.cycle.points.is_empty();
         while let Some(point) = tracer.next() {
             let event = point.event.map(|e| tracer.events()[e].clone());
@@ -307,12 +365,7 @@ impl<P: Loading> Traveller<'_, P> {
             let (step, ahead) = (point.p - self.parameter, target - self.parameter);
             let way = (self.settings.end - self.settings.start).abs();
             if step * ahead < 0.0 && step.abs() > TURN * way {
-                let detail = format!(
-                    "at {name} = {:.10} the branch turns back without a loss of stability",
-                    self.parameter
-                );
-                outcome = Some(Err(End::stop(StopReason::StepTooSmall, detail)));
-                break;
+                return Err(self.cannot_go_on("the branch turns back without a loss of stability"));
             }
             self.x.copy_from_slice(&point.u);
             self.parameter = point.p;
@@ -323,45 +376,34 @@ impl<P: Loading> Traveller<'_, P> {
                 s: point.s,
             };
             if observer(&progress).is_break() {
-                let detail = "interrupted".to_owned();
-                outcome = Some(Err(End::stop(StopReason::Interrupted, detail)));
-                break;
+                return Err(End::stop(StopReason::Interrupted, "interrupted".to_owned()));
             }
-            let lost = event.as_ref().and_then(|e| e.unstable_after).is_some_and(|n| n > 0);
-            let meets = event.as_ref().is_some_and(|e| {
-                let turns = matches!(&e.detail, Detail::Crossing(crossing) if crossing.from_side);
-                e.kind == EventKind::BranchPoint && (lost || turns)
-            });
+            let (meets, reached) = reached(&point, event.as_ref());
             if meets && self.pass(direction, target) {
-                outcome = Some(Ok(Stretch::Passed));
-                break;
+                return Ok(Some(Stretch::Passed));
             }
-            if lost {
-                outcome = Some(Ok(Stretch::Lost));
-                break;
-            }
-            if point.unstable.is_some_and(|n| n > 0) {
-                let detail = format!(
-                    "at {name} = {:.10} the state is unstable, but the special point before it \
-                     was not found",
-                    point.p
-                );
-                outcome = Some(Err(End::stop(StopReason::StepTooSmall, detail)));
-                break;
+            match reached {
+                Reached::Stable => {}
+                Reached::Loss => return Ok(Some(Stretch::Lost)),
+                Reached::Unstable => {
+                    return Err(self.cannot_go_on(
+                        "the state is unstable, but the special point before it was not found",
+                    ));
+                }
             }
         }
-        self.cycle.newton_iterations += tracer.statistics().newton_iterations;
-        if let Some(outcome) = outcome {
-            return outcome;
-        }
-        match tracer.stopped() {
-            Some(stop) if stop.reason == StopReason::Target => Ok(Stretch::Target),
-            Some(stop) if stop.reason == StopReason::MaxPoints => {
-                Err(End::stop(stop.reason, format!("the limit of {limit} points was reached")))
-            }
-            Some(stop) => Err(End::Stop(stop.clone())),
-            None => Err(End::stop(StopReason::Interrupted, String::new())),
-        }
+        Ok(None)
+    }
+
+    fn out_of_points(&self) -> End {
+        let limit = self.settings.trace.max_points;
+        End::stop(StopReason::MaxPoints, format!("the limit of {limit} points was reached"))
+    }
+
+    /// The end of the path at the present parameter.
+    fn cannot_go_on(&self, why: &str) -> End {
+        let (name, at) = (self.problem.device().parameter_name(), self.parameter);
+        End::stop(StopReason::StepTooSmall, format!("at {name} = {at:.10} {why}"))
     }
 
     /// At a branch point: goes on without a jump if beyond it there are stable states of another
@@ -540,5 +582,32 @@ impl Cycle {
     /// Energy dissipated by all jumps; `None` if one of them has no end.
     pub fn dissipated(&self) -> Option<f64> {
         self.jumps.iter().try_fold(0.0, |sum, jump| Some(sum + jump.dissipated?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_point_is_to_a_stretch() {
+        use Reached::{Loss, Stable, Unstable};
+        // branch point, its branch turns, stability lost, state unstable: may be passed, what it is otherwise
+        for (signs, expected) in [
+            ([false, false, false, false], (false, Stable)),
+            ([false, false, false, true], (false, Unstable)),
+            ([false, false, true, false], (false, Loss)),
+            ([false, false, true, true], (false, Loss)),
+            ([true, false, false, false], (false, Stable)),
+            ([true, false, false, true], (false, Unstable)),
+            ([true, false, true, false], (true, Loss)),
+            ([true, false, true, true], (true, Loss)),
+            ([true, true, false, false], (true, Stable)),
+            ([true, true, false, true], (true, Unstable)),
+            ([true, true, true, false], (true, Loss)),
+        ] {
+            let [branch_point, turns, lost, unstable] = signs;
+            assert_eq!(judge(branch_point, turns, lost, unstable), expected, "{signs:?}");
+        }
     }
 }

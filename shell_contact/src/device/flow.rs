@@ -49,7 +49,7 @@ pub enum Motion {
 }
 
 /// Why a motion was not followed to its end.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MotionError {
     /// The state at the beginning has no energy or no Hessian.

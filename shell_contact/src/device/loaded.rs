@@ -5,7 +5,7 @@ use crate::contact::{ContactProblem, parameter};
 use crate::observables::{self, Observation};
 use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::{Arrow, SymmetricBand};
-use continuation::{EvalError, ParamId, Parameter, Problem, Stability};
+use continuation::{EvalError, Name, ParamId, Parameter, Problem, Stability, literals};
 use std::f64::consts::PI;
 
 /// Names of the observables: those of the contact problem, then `z0`.
@@ -18,6 +18,8 @@ const NAMES: [&str; observables::NAMES.len() + 1] = {
     }
     names
 };
+
+static OBSERVABLES: [Name; NAMES.len()] = literals(NAMES);
 
 /// Unknowns `(u, z0)`; residual: the gradient of the potential of half a shell and its device over
 /// `2π`, `E + (√k_b/2π) F z0` under a dead load and `E + (√k_b/4π) k_c (z0 − z_base)²` on a
@@ -38,7 +40,7 @@ impl<'c> LoadedProblem<'c> {
     /// # Errors
     /// For a grip, and for a stiffness that is not positive.
     pub fn new(contact: &'c ContactProblem, device: Device) -> Result<Self, DeviceError> {
-        let own = |unit, scale| Parameter { name: device.parameter_name(), unit, scale };
+        let own = |unit, scale| Parameter::new(device.parameter_name(), unit, scale);
         let first = match device {
             Device::Grip => return Err(DeviceError::Grip),
             Device::DeadLoad => own("sqrt(chi k_b)", 1.0),
@@ -188,8 +190,8 @@ impl Problem for LoadedProblem<'_> {
         Stability::EnergyHessian
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &NAMES
+    fn observables(&self) -> &[Name] {
+        &OBSERVABLES
     }
 
     fn observe(&self, x: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

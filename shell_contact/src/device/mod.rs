@@ -27,9 +27,10 @@ pub use start::{StartError, device_watches, free_start, loaded_start, trace_load
 use continuation::{EvalError, ParamId, Problem};
 
 /// What holds the plates.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Device {
     /// A rigid grip: the plate's height is prescribed.
+    #[default]
     Grip,
     /// A dead load: the force is prescribed.
     DeadLoad,
@@ -57,6 +58,26 @@ pub enum DeviceError {
 }
 
 impl Device {
+    /// The names of the devices.
+    pub const NAMES: [&'static str; 3] = ["grip", "dead-load", "cantilever"];
+
+    /// Its name, as in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Device::Grip => Self::NAMES[0],
+            Device::DeadLoad => Self::NAMES[1],
+            Device::Cantilever { .. } => Self::NAMES[2],
+        }
+    }
+
+    /// Stiffness of a cantilever.
+    pub fn stiffness(self) -> Option<f64> {
+        match self {
+            Device::Cantilever { stiffness } => Some(stiffness),
+            Device::Grip | Device::DeadLoad => None,
+        }
+    }
+
     /// Name of its parameter, as in files.
     pub fn parameter_name(self) -> &'static str {
         match self {

@@ -12,6 +12,8 @@
 //! reference sphere unfolds slightly. A moment `m` at the ring (residual `+ m c`) unfolds it too:
 //! the fold curve in `(α, m)` has the cusp that organises both.
 
+#[cfg(test)]
+mod certify;
 mod mesh;
 mod moving;
 mod observe;
@@ -19,17 +21,17 @@ mod observe;
 pub use mesh::DEFAULT_GRADING;
 pub use observe::{NAMES, RingObservation, RingProfile};
 
-use crate::contact::with_law;
+use crate::contact::{POISSON_RATIO, gas_and_material, gas_and_material_of, with_law};
 use crate::density::Coefficients;
 use crate::energy::{self, gradients};
 use crate::film::NoFilm;
 use crate::gas::Gas;
-use crate::membrane::Membrane;
+use crate::membrane::{Constant, Membrane};
 use crate::meridian::Mesh;
 use crate::params::{ParameterError, Shell};
 use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::{Arrow, SymmetricBand};
-use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
+use continuation::{EvalError, Matrix, Name, ParamId, Parameter, Problem, Stability};
 use mesh::{LEAST_ANGLE, Layout};
 use moving::{AtRing, Moving, MovingMesh};
 use std::f64::consts::FRAC_PI_2;
@@ -46,8 +48,14 @@ pub mod parameter {
     pub const BENDING: ParamId = ParamId(2);
     /// Ambient pressure `P_A R0/χ`.
     pub const PRESSURE: ParamId = ParamId(3);
-    /// How many there are.
-    pub const COUNT: usize = 4;
+    /// Gas exponent.
+    pub const GAS_EXPONENT: ParamId = ParamId(4);
+    /// Poisson's ratio `ν`.
+    pub const POISSON: ParamId = ParamId(5);
+    /// The share `b` of Mooney and Rivlin's law, for a shell of that law.
+    pub const B: ParamId = ParamId(6);
+    /// How many there are at most.
+    pub const COUNT: usize = 7;
 }
 
 /// The contact angle for which the mesh is made, and at which lengths are measured.
@@ -71,7 +79,7 @@ pub struct RingGroups {
 pub struct RingLoadProblem {
     shell: Shell,
     groups: RingGroups,
-    parameters: [Parameter; parameter::COUNT],
+    parameters: Vec<Parameter>,
     coefficients: usize,
     mass: SymmetricBand,
     moving: Moving,
@@ -123,16 +131,16 @@ impl RingLoadProblem {
         let mut moving = MovingMesh::new(Layout::new(elements, grading)?, NOMINAL);
         let (mesh, _) = moving.at(NOMINAL);
         let (coefficients, mass) = (mesh.unknowns(), mesh.mass().clone());
-        let parameter = |name, unit, scale| Parameter { name, unit, scale };
+        let own = [
+            Parameter::new("alpha", "rad", NOMINAL),
+            Parameter::new("moment", "chi R0^2", MOMENT_SCALE * bending),
+            Parameter::new("bending", "chi R0^2", bending),
+            Parameter::new("pressure", "chi/R0", if pressure > 0.0 { pressure } else { 1.0 }),
+        ];
         Ok(RingLoadProblem {
             shell: *shell,
             groups: *groups,
-            parameters: [
-                parameter("alpha", "rad", NOMINAL),
-                parameter("moment", "chi R0^2", MOMENT_SCALE * bending),
-                parameter("bending", "chi R0^2", bending),
-                parameter("pressure", "chi/R0", if pressure > 0.0 { pressure } else { 1.0 }),
-            ],
+            parameters: own.into_iter().chain(gas_and_material(shell.law)).collect(),
             coefficients,
             mass,
             moving: Moving::new(moving),
@@ -147,7 +155,9 @@ impl RingLoadProblem {
     /// The case's parameters at a contact angle in radians, in the order of
     /// [`Problem::parameters`]; no moment.
     pub fn parameters_at(&self, alpha: f64) -> Vec<f64> {
-        vec![alpha, 0.0, self.groups.bending, self.groups.pressure]
+        let g = &self.groups;
+        let own = [alpha, 0.0, g.bending, g.pressure];
+        own.into_iter().chain(gas_and_material_of(g.gas_exponent, &self.shell)).collect()
     }
 
     /// The shell's material.
@@ -161,11 +171,12 @@ impl RingLoadProblem {
     }
 
     fn values(&self, u: &[f64], p: &[f64]) -> Result<Values, EvalError> {
-        if let Some(at) = (0..parameter::COUNT).find(|&i| !p.get(i).is_some_and(|x| x.is_finite()))
-        {
+        let known = self.parameters.len();
+        if let Some(at) = (0..known).find(|&i| !p.get(i).is_some_and(|x| x.is_finite())) {
             return Err(EvalError::NotFinite { at: u.len() + at });
         }
-        let [alpha, moment, bending, ambient] = std::array::from_fn(|i| p[i]);
+        let [alpha, moment, bending, ambient, exponent, poisson, b]: [f64; parameter::COUNT] =
+            std::array::from_fn(|i| p.get(i).copied().unwrap_or(f64::NAN));
         let bad = |what, ParamId(i): ParamId, value| {
             Err(EvalError::Inadmissible { what, at: u.len() + i, value })
         };
@@ -175,31 +186,38 @@ impl RingLoadProblem {
         if bending <= 0.0 {
             return bad("the bending stiffness is not positive", parameter::BENDING, bending);
         }
+        if poisson.abs() >= 1.0 {
+            return bad(POISSON_RATIO, parameter::POISSON, poisson);
+        }
         let c = Coefficients {
             bending,
-            poisson: self.shell.poisson,
-            b: self.shell.law.b().unwrap_or(0.0),
+            poisson,
+            b,
             surface_tension: 0.0,
             adhesion: 0.0,
             film: 1.0,
             plate: f64::INFINITY,
         };
-        let exponent = self.groups.gas_exponent;
         Ok(Values { alpha, moment, c, gas: Gas { ambient, surface_tension: 0.0, exponent } })
+    }
+
+    /// The shell with the material of these values.
+    fn material(&self, values: &Values) -> Shell {
+        values.c.material(self.shell.law)
     }
 
     /// The matrix, and the gradient unless `r` is empty.
     fn assemble<L: Membrane>(
         &self,
         law: &L,
-        (u, p): (&[f64], &[f64]),
+        (u, values): (&[f64], &Values),
         r: &mut [f64],
         j: &mut Arrow<SymmetricBand>,
         row: Row,
     ) -> Result<(), EvalError> {
-        let Values { alpha, moment, c, gas } = self.values(u, p)?;
+        let Values { alpha, moment, c, gas } = values;
         let mut moving = self.moving.lock();
-        let (mesh, ring) = moving.at(alpha);
+        let (mesh, ring) = moving.at(*alpha);
         let (x, q) = u.split_at(self.coefficients);
         let (out, _) = r.split_at_mut(r.len().min(self.coefficients));
         j.set_zero();
@@ -210,9 +228,9 @@ impl RingLoadProblem {
         for (out, v) in out.iter_mut().zip(v) {
             *out = -excess * *v;
         }
-        energy::add_linearisation(mesh, x, law, &NoFilm, &c, excess, out, j.core_mut())?;
+        energy::add_linearisation(mesh, x, law, &NoFilm, c, excess, out, j.core_mut())?;
         if !r.is_empty() {
-            add_ring(ring, u, c.bending * q[0], moment, alpha, r);
+            add_ring(ring, u, c.bending * q[0], *moment, *alpha, r);
         }
         for at in ring {
             let force = c.bending * at.height[0];
@@ -226,12 +244,12 @@ impl RingLoadProblem {
         &self,
         law: &L,
         u: &[f64],
-        p: &[f64],
+        values: &Values,
         r: &mut [f64],
     ) -> Result<(), EvalError> {
-        let Values { alpha, moment, c, gas } = self.values(u, p)?;
+        let Values { alpha, moment, c, gas } = values;
         let mut moving = self.moving.lock();
-        let (mesh, ring) = moving.at(alpha);
+        let (mesh, ring) = moving.at(*alpha);
         let (x, q) = u.split_at(self.coefficients);
         let (out, _) = r.split_at_mut(self.coefficients);
         let volume = energy::volume_gradient(mesh, x, out)?;
@@ -239,9 +257,9 @@ impl RingLoadProblem {
         for out in out.iter_mut() {
             *out *= -excess;
         }
-        let gradient = gradients::Energy { law, film: &NoFilm, c: &c };
+        let gradient = gradients::Energy { law, film: &NoFilm, c };
         energy::add_gradient(mesh, x, c.plate, out, &gradient)?;
-        add_ring(ring, u, c.bending * q[0], moment, alpha, r);
+        add_ring(ring, u, c.bending * q[0], *moment, *alpha, r);
         Ok(())
     }
 }
@@ -274,7 +292,8 @@ impl Problem for RingLoadProblem {
     }
 
     fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
-        with_law!(self.shell, |law| self.residual_as(&law, u, p, r))
+        let values = self.values(u, p)?;
+        with_law!(self.material(&values), |law| self.residual_as(&law, u, &values, r))
     }
 
     fn jacobian(
@@ -293,7 +312,10 @@ impl Problem for RingLoadProblem {
         r: &mut [f64],
         j: &mut Arrow<SymmetricBand>,
     ) -> Result<(), EvalError> {
-        with_law!(self.shell, |law| self.assemble(&law, (u, p), r, j, Row::Level))
+        let values = self.values(u, p)?;
+        with_law!(self.material(&values), |law| {
+            self.assemble(&law, (u, &values), r, j, Row::Level)
+        })
     }
 
     fn parameter_derivative(
@@ -313,7 +335,9 @@ impl Problem for RingLoadProblem {
         let (shell, _) = out.split_at_mut(self.coefficients);
         match which {
             parameter::ALPHA => {
-                with_law!(self.shell, |law| moving.angle_derivative(&law, x, &c, &gas, shell));
+                with_law!(c.material(self.shell.law), |law| {
+                    moving.angle_derivative(&law, x, &c, &gas, shell)
+                });
                 let mut slope = -alpha.cos();
                 for at in &ring {
                     let force = c.bending * q[0];
@@ -339,6 +363,21 @@ impl Problem for RingLoadProblem {
                 let change = gas.excess_by_ambient(volume);
                 shell.iter_mut().for_each(|v| *v *= -change);
             }
+            parameter::GAS_EXPONENT => {
+                let volume = energy::volume_gradient(mesh, x, shell)?;
+                let change = gas.excess_by_exponent(volume);
+                shell.iter_mut().for_each(|v| *v *= -change);
+            }
+            parameter::POISSON | parameter::B => {
+                let constant = match which {
+                    parameter::B => Constant::MooneyB,
+                    _ => Constant::Poisson,
+                };
+                with_law!(c.material(self.shell.law), |law| {
+                    let gradient = gradients::Material { law: &law, constant, c: &c };
+                    energy::add_gradient(mesh, x, c.plate, shell, &gradient)
+                })?;
+            }
             _ => {}
         }
         Ok(())
@@ -361,15 +400,18 @@ impl Problem for RingLoadProblem {
         p: &[f64],
         h: &mut Arrow<SymmetricBand>,
     ) -> Result<(), EvalError> {
-        with_law!(self.shell, |law| self.assemble(&law, (u, p), &mut [], h, Row::Height))
+        let values = self.values(u, p)?;
+        with_law!(self.material(&values), |law| {
+            self.assemble(&law, (u, &values), &mut [], h, Row::Height)
+        })
     }
 
     fn multipliers(&self) -> usize {
         1
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &observe::NAMES
+    fn observables(&self) -> &[Name] {
+        &observe::OBSERVABLES
     }
 
     fn observe(&self, u: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

@@ -6,7 +6,7 @@ use crate::energy;
 use crate::film::NoFilm;
 use crate::meridian::Mesh;
 use crate::resolution::{self, Resolution};
-use continuation::EvalError;
+use continuation::{EvalError, Name, literals};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Names of the observables, in the order of [`RingObservation::to_array`].
@@ -20,6 +20,9 @@ pub const NAMES: [&str; 8] = [
     "pole_over_h",
     "highest_over_h",
 ];
+
+/// The same, as a problem gives them.
+pub(super) static OBSERVABLES: [Name; NAMES.len()] = literals(NAMES);
 
 /// Force in units of `2πχR0`, times this, is what is reported.
 pub(super) const FORCE_UNIT: f64 = 1e6;
@@ -76,22 +79,18 @@ pub struct RingProfile {
 }
 
 impl RingLoadProblem {
-    /// Thickness over radius of a homogeneous shell with this bending stiffness (Eq. 11).
-    pub fn thickness(&self, bending: f64) -> f64 {
-        let nu = self.shell().poisson;
-        (12.0 * (1.0 - nu * nu) * bending).sqrt()
-    }
-
     /// Everything that is reported of a state.
     ///
     /// # Errors
     /// When the state is not admissible to the model.
     pub fn observation(&self, u: &[f64], p: &[f64]) -> Result<RingObservation, EvalError> {
         let Values { alpha, c, gas, .. } = self.values(u, p)?;
-        let h = self.thickness(c.bending);
+        let h = thickness(c.bending, c.poisson);
         let (x, q) = u.split_at(u.len().saturating_sub(1));
         self.with_mesh(alpha, |mesh, _, outside| {
-            let parts = with_law!(self.shell, |law| energy::parts(mesh, x, &law, &NoFilm, &c))?;
+            let parts = with_law!(c.material(self.shell.law), |law| {
+                energy::parts(mesh, x, &law, &NoFilm, &c)
+            })?;
             let ring = alpha.cos() + mesh.displacement_in(x, outside, alpha)[0].1;
             let pole = 1.0 + mesh.displacement_in(x, 0, 0.0)[0].1;
             let highest = highest(mesh, x);
@@ -136,6 +135,11 @@ impl RingLoadProblem {
             RingProfile { sigma, z }
         }))
     }
+}
+
+/// Thickness over radius of a homogeneous shell with this bending stiffness (Eq. 11).
+fn thickness(bending: f64, nu: f64) -> f64 {
+    (12.0 * (1.0 - nu * nu) * bending).sqrt()
 }
 
 /// `max z`: the highest knot or Gauss point, and the top of the arc about it.

@@ -90,7 +90,7 @@ pub fn follow_asymmetric(
     observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<Branch, TraceError> {
     let p = problem.parameters_at(z0);
-    let name = problem.parameters()[super::parameter::Z0.0].name;
+    let name = &problem.parameters()[super::parameter::Z0.0].name;
     let branch = both_ways(problem, name, u, &p, settings, watches, observer)?;
     let off = |point: &Point| distance(problem, &point.u, u) + (point.p - z0).abs();
     let nearest = (0..branch.points.len())

@@ -70,7 +70,7 @@ use crate::params::{Dimensionless, ParameterError, Shell};
 use crate::plate::Variable;
 use crate::spline::{Component, HALF_BANDWIDTH};
 use continuation::linalg::SymmetricBand;
-use continuation::{EvalError, Matrix, ParamId, Parameter, Problem, Stability};
+use continuation::{EvalError, Matrix, Name, ParamId, Parameter, Problem, Stability};
 use std::f64::consts::FRAC_PI_2;
 
 /// Indices of the parameters in `p`.
@@ -203,7 +203,7 @@ impl TwoPlatesProblem {
         shell.validate()?;
         groups.validate()?;
         let scale = |value: f64, otherwise: f64| if value > 0.0 { value } else { otherwise };
-        let parameter = |name, unit, scale| Parameter { name, unit, scale };
+        let parameter = Parameter::new;
         let own = [
             parameter("z0", "R0", 1.0),
             parameter("bending", "chi R0^2", groups.bending),
@@ -407,8 +407,8 @@ impl Problem for TwoPlatesProblem {
         Stability::EnergyHessian
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &NAMES
+    fn observables(&self) -> &[Name] {
+        &observe::OBSERVABLES
     }
 
     fn observe(&self, u: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

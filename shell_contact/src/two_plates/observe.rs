@@ -9,7 +9,7 @@ use crate::half::HalfMeridian;
 use crate::membrane::tensions;
 use crate::observables::{self, Observation, Profile, contact_radius};
 use crate::plate::{self, Variable};
-use continuation::{EvalError, ParamId};
+use continuation::{EvalError, Name, ParamId, literals};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// How many there are beside those of the half model.
@@ -28,6 +28,9 @@ pub const NAMES: [&str; observables::NAMES.len() + OWN] = {
     }
     names
 };
+
+/// The same, as a problem gives them.
+pub(super) static OBSERVABLES: [Name; NAMES.len()] = literals(NAMES);
 
 /// What is reported of a state; lengths in `R0`, forces in `√(χk_b)`, positive in compression.
 #[derive(Debug, Clone, Copy, PartialEq)]

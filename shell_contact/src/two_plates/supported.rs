@@ -18,7 +18,7 @@ use crate::params::ParameterError;
 use crate::plate::{self, Variable};
 use crate::spline::HALF_BANDWIDTH;
 use continuation::linalg::{Arrow, SymmetricBand};
-use continuation::{EvalError, ParamId, Parameter, Problem, Stability};
+use continuation::{EvalError, Name, ParamId, Parameter, Problem, Stability, literals};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Names of the observables: those of the shell between plates, then half their distance.
@@ -31,6 +31,8 @@ const WITH_Z0: [&str; NAMES.len() + 1] = {
     }
     names
 };
+
+static OBSERVABLES: [Name; WITH_Z0.len()] = literals(WITH_Z0);
 
 /// What holds shell and plates beside the grip.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -71,7 +73,7 @@ impl<'c> SupportedProblem<'c> {
         }
         let mut parameters = shell.parameters().to_vec();
         if let (Some(_), Some(first)) = (support.spring, parameters.first_mut()) {
-            first.name = "base";
+            first.name = "base".into();
         }
         let [top, _] = shell.halves();
         let mut equator = vec![0.0; shell.dim()];
@@ -96,8 +98,8 @@ impl<'c> SupportedProblem<'c> {
     }
 
     /// Name of the parameter that is continued.
-    pub fn parameter_name(&self) -> &'static str {
-        self.parameters[0].name
+    pub fn parameter_name(&self) -> &str {
+        &self.parameters[0].name
     }
 
     /// The case's parameters with the first of them at `value`.
@@ -352,8 +354,8 @@ impl Problem for SupportedProblem<'_> {
         usize::from(self.support.held)
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &WITH_Z0
+    fn observables(&self) -> &[Name] {
+        &OBSERVABLES
     }
 
     fn observe(&self, x: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

@@ -4,7 +4,7 @@
 use super::close;
 use continuation::linalg::SymmetricBand;
 use continuation::{
-    EvalError, Matrix, ParamId, Parameter, Problem, Settings, Stability, StopReason,
+    EvalError, Matrix, Name, ParamId, Parameter, Problem, Settings, Stability, StopReason, names,
 };
 use shell_contact::Device;
 use shell_contact::device::{Cycle, CycleSettings, Loading, RelaxationSettings, balance, travel};
@@ -18,7 +18,7 @@ struct Pitchfork {
 
 impl Pitchfork {
     fn new(sign: f64) -> Pitchfork {
-        Pitchfork { sign, parameters: [Parameter { name: "z0", unit: "", scale: 1.0 }] }
+        Pitchfork { sign, parameters: [Parameter::new("z0", "", 1.0)] }
     }
 }
 
@@ -66,8 +66,8 @@ impl Problem for Pitchfork {
         Stability::EnergyHessian
     }
 
-    fn observables(&self) -> &[&'static str] {
-        &["force", "energy_total"]
+    fn observables(&self) -> &[Name] {
+        names!["force", "energy_total"]
     }
 
     fn observe(&self, u: &[f64], p: &[f64], out: &mut [f64]) -> Result<(), EvalError> {

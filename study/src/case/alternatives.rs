@@ -1,7 +1,7 @@
 //! Keys that a case does not have, and would have if another of its words were chosen: for pages on which a
 //! person chooses.
 
-use super::{Law, ProblemCase, ResolvedCase, film};
+use super::{Law, LawName, ProblemCase, ResolvedCase, film};
 
 /// A word that a key waits for: the key of the choice, and the word.
 pub type Needs = (String, &'static str);
@@ -9,7 +9,7 @@ pub type Needs = (String, &'static str);
 /// What a key needs to have a meaning, by the path of both in a case file; `None` for one that always has.
 pub fn needs(table: &str, key: &str) -> Option<Needs> {
     match (table, key) {
-        ("shell", "b") => Some(("shell.law".to_owned(), Law::NAMES[1])),
+        ("shell", "b") => Some(("shell.law".to_owned(), LawName::MooneyRivlin.name())),
         ("dimensionless" | "physical" | "plate.top" | "plate.bottom", key) => {
             film::owner(table, key).map(|word| (format!("{table}.potential"), word))
         }
@@ -28,7 +28,7 @@ pub fn alternatives(case: &ResolvedCase) -> Vec<(String, String)> {
         ProblemCase::Contact(contact) => {
             match &contact.physical {
                 Some(physical) => add("physical", film::others(physical)),
-                None => add("dimensionless", film::others_of_groups(&contact.groups.potential)),
+                None => add("dimensionless", film::others_of_groups(&contact.potential)),
             }
             contact.shell.law
         }

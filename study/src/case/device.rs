@@ -6,43 +6,7 @@ use super::path::Scale;
 use super::reader::{Reader, Section};
 use crate::closest::closest;
 use crate::units::{Dimension, Quantity};
-
-/// What holds the plates.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub enum DeviceCase {
-    /// The plate distance is prescribed.
-    #[default]
-    Grip,
-    /// The force is prescribed.
-    DeadLoad,
-    /// The base of a spring behind each plate is prescribed.
-    Cantilever {
-        /// `k_c` per plate, in `sqrt(chi k_b)/R0`.
-        stiffness: f64,
-    },
-}
-
-impl DeviceCase {
-    /// The names that a case file may use.
-    pub(super) const NAMES: [&str; 3] = ["grip", "dead-load", "cantilever"];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            DeviceCase::Grip => Self::NAMES[0],
-            DeviceCase::DeadLoad => Self::NAMES[1],
-            DeviceCase::Cantilever { .. } => Self::NAMES[2],
-        }
-    }
-
-    /// Stiffness of a cantilever.
-    pub fn stiffness(self) -> Option<f64> {
-        match self {
-            DeviceCase::Cantilever { stiffness } => Some(stiffness),
-            _ => None,
-        }
-    }
-}
+use shell_contact::Device;
 
 /// The device of a section whose keys are all known; a grip if it is absent. A stiffness in quotes is that of one
 /// lever on the whole bubble, and is handed back as it was given.
@@ -50,12 +14,12 @@ pub(super) fn device(
     reader: &Reader,
     section: Section<'_>,
     scale: Scale,
-) -> Option<(DeviceCase, Option<Quantity>)> {
+) -> Option<(Device, Option<Quantity>)> {
     if !section.exists() {
-        return Some((DeviceCase::Grip, None));
+        return Some((Device::Grip, None));
     }
     let Some(node) = section.get("kind") else {
-        reader.missing(section, "kind", format!("give one of {}", DeviceCase::NAMES.join(", ")));
+        reader.missing(section, "kind", format!("give one of {}", Device::NAMES.join(", ")));
         return None;
     };
     let kind = reader.text(section, "kind")?;
@@ -65,19 +29,19 @@ pub(super) fn device(
         _ => (reader.number(section, STIFFNESS.name, STIFFNESS.range()), None),
     };
     let device = match kind {
-        "grip" => DeviceCase::Grip,
-        "dead-load" => DeviceCase::DeadLoad,
+        "grip" => Device::Grip,
+        "dead-load" => Device::DeadLoad,
         "cantilever" => {
             if given.is_none() {
                 let hint = "a cantilever needs its stiffness per plate, in sqrt(chi k_b)/R0; or, with \
                             [physical], that of one lever on the whole bubble, such as \"0.08 N/m\"";
                 reader.missing(section, "stiffness", hint);
             }
-            return Some((DeviceCase::Cantilever { stiffness: stiffness? }, lever));
+            return Some((Device::Cantilever { stiffness: stiffness? }, lever));
         }
         _ => {
-            let suggestion = closest(kind, DeviceCase::NAMES).map(ToString::to_string);
-            let allowed = DeviceCase::NAMES.iter().map(ToString::to_string).collect();
+            let suggestion = closest(kind, Device::NAMES).map(ToString::to_string);
+            let allowed = Device::NAMES.iter().map(ToString::to_string).collect();
             reader.refuse(section, "kind", node, Complaint::UnknownWord { allowed, suggestion });
             return None;
         }

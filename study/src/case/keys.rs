@@ -2,7 +2,7 @@
 //!
 //! The reader of case files, its messages and `docs/keys.md` are made from these.
 
-use super::{DeviceCase, Law, PathQuantity, StabilityCase, film, picture, problem};
+use super::{Device, LawName, PathQuantity, StabilityCase, film, picture, problem};
 use crate::units::Dimension;
 use std::fmt::Write as _;
 
@@ -16,7 +16,7 @@ use Absent::{Other, Required};
 
 /// `shell.law`.
 pub(crate) const LAW: Key =
-    key("law", Kind::Word(&Law::NAMES), "", Required, "Law of the membrane");
+    key("law", Kind::Word(&LawName::NAMES), "", Required, "Law of the membrane");
 /// `shell.poisson`.
 pub(crate) const POISSON: Key = number(
     "poisson",
@@ -297,7 +297,7 @@ pub(crate) const MAP: [Key; 2] = [MAP_FROM, MAP_TO];
 /// `device.kind`.
 pub(crate) const DEVICE_KIND: Key = key(
     "kind",
-    Kind::Word(&DeviceCase::NAMES),
+    Kind::Word(&Device::NAMES),
     "",
     Other("grip without the table"),
     "What holds the plates",

@@ -30,7 +30,6 @@ mod tests;
 
 pub use alternatives::{Needs, alternatives, needs};
 pub use catalogue::catalogue;
-pub use device::DeviceCase;
 pub use document::{Origin, Override, shown};
 pub use error::{CaseError, Complaint, LoadError};
 pub use film::PASSED_OVER;
@@ -43,8 +42,8 @@ pub use problem::{PlateCase, ProblemCase, RingLoadCase, TwoPlatesCase};
 pub use source::{SHIPPED, SWEEPS, find, load, load_text, parse};
 
 pub use shell_contact::film::Film;
+pub use shell_contact::{Device, Dimensionless, Law, LawName, Shell, landmarks::Wanted};
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// A case with every default filled in and every value checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,26 +91,19 @@ impl Default for StabilityCase {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactCase {
     /// The shell's material.
-    pub shell: ShellCase,
+    pub shell: Shell,
     /// The dimensionless groups, always present.
-    pub groups: Groups,
+    pub groups: Dimensionless,
+    /// The potential of the film.
+    pub potential: Film,
     /// The physical parameters the groups came from, if the case gave those.
     pub physical: Option<Box<PhysicalCase>>,
     /// The mesh.
     pub mesh: MeshCase,
     /// What holds the plates.
-    pub device: DeviceCase,
+    pub device: Device,
     /// Special points that are looked for besides those of every branch.
-    pub events: EventsCase,
-}
-
-/// Special points of a trace that are looked for only where a case asks for them.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct EventsCase {
-    /// Where the slope of the force has fallen to half of its initial one.
-    pub knee: bool,
-    /// Where the film's pressure at the pole turns from attraction to repulsion.
-    pub contact: bool,
+    pub events: Wanted,
 }
 
 /// A problem of the catalogue.
@@ -123,63 +115,6 @@ pub struct CatalogueCase {
     pub parameters: BTreeMap<String, f64>,
     /// Number of elements, for problems that have a mesh.
     pub elements: Option<usize>,
-}
-
-/// A shell's material.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShellCase {
-    /// The law of the membrane.
-    pub law: Law,
-    /// Poisson's ratio.
-    pub poisson: f64,
-}
-
-/// The law of the membrane.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Law {
-    /// Hooke's law.
-    Hooke,
-    /// Mooney-Rivlin, strain softening.
-    MooneyRivlin {
-        /// 0 is neo-Hookean, 1 the other end of the law.
-        b: f64,
-    },
-    /// Skalak, strain hardening.
-    Skalak,
-}
-
-impl Law {
-    /// The names that a case file may use.
-    pub const NAMES: [&'static str; 3] = ["hooke", "mooney-rivlin", "skalak"];
-}
-
-impl fmt::Display for Law {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Law::Hooke => Law::NAMES[0],
-            Law::MooneyRivlin { .. } => Law::NAMES[1],
-            Law::Skalak => Law::NAMES[2],
-        })
-    }
-}
-
-/// The dimensionless groups of the contact problem.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Groups {
-    /// `k_b / (chi R0²)`.
-    pub bending: f64,
-    /// `P_A R0 / chi`.
-    pub pressure: f64,
-    /// `w0 / chi`.
-    pub adhesion: f64,
-    /// `delta_A / R0`.
-    pub film: f64,
-    /// The potential whose depth and length these are.
-    pub potential: Film,
-    /// `gamma_BW / chi`.
-    pub surface_tension: f64,
-    /// The polytropic exponent of the gas.
-    pub gas_exponent: f64,
 }
 
 /// The mesh along the meridian.

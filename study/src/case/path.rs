@@ -16,7 +16,7 @@ use super::error::Complaint;
 use super::keys::{self, ANY, POSITIVE, Range};
 use super::reader::Section;
 use super::resolve::{CONTACT_START, Resolver};
-use super::{DeviceCase, PathCase};
+use super::{Device, PathCase};
 use crate::units::{self, Dimension, Quantity};
 
 /// What the ends of a path measure.
@@ -62,16 +62,16 @@ impl PathQuantity {
     }
 
     /// Why a device cannot be driven by it, and what to do.
-    fn refused_by(self, device: DeviceCase) -> Option<String> {
+    fn refused_by(self, device: Device) -> Option<String> {
         let name = self.name();
         match (self, device) {
             (PathQuantity::Parameter, _)
-            | (PathQuantity::Piezo, DeviceCase::Cantilever { .. })
+            | (PathQuantity::Piezo, Device::Cantilever { .. })
             | (
                 PathQuantity::Separation | PathQuantity::Approach | PathQuantity::Total,
-                DeviceCase::Grip,
+                Device::Grip,
             ) => None,
-            (_, DeviceCase::DeadLoad) => Some(format!(
+            (_, Device::DeadLoad) => Some(format!(
                 "a dead load prescribes the force, not the {name}; leave path.quantity out and give forces"
             )),
             (PathQuantity::Piezo, _) => Some(
@@ -133,7 +133,7 @@ impl Resolver<'_> {
     /// The path of a contact case, and how it was given if that was in other words than the solver's.
     pub(super) fn contact_path(
         &self,
-        device: Option<DeviceCase>,
+        device: Option<Device>,
         scale: Scale,
     ) -> Option<(PathCase, Option<PhysicalPath>)> {
         let section = self.contact_path_table();
@@ -151,9 +151,9 @@ impl Resolver<'_> {
                 quantity
             }
         };
-        let is_grip = device.is_none_or(|device| device == DeviceCase::Grip);
+        let is_grip = device.is_none_or(|device| device == Device::Grip);
         let ranges = if is_grip { [CONTACT_START, POSITIVE] } else { [ANY, ANY] };
-        let force = device == Some(DeviceCase::DeadLoad);
+        let force = device == Some(Device::DeadLoad);
         let [start, end] = [("start", ranges[0]), ("end", ranges[1])]
             .map(|(key, range)| self.path_end(section, key, range, (quantity, force), scale));
         let path = self.path_between(

@@ -1,8 +1,9 @@
-//! Physical parameters of a contact case, and the dimensionless groups they make.
+//! Physical parameters of a contact case, as they were written.
 
-use super::Groups;
+use super::Dimensionless;
 use super::path::PhysicalPath;
 use crate::units::Quantity;
+use shell_contact::Physical;
 use shell_contact::film::Film;
 
 /// The physical parameters of a contact case, as written and in SI units.
@@ -61,32 +62,28 @@ impl PhysicalCase {
     }
 
     /// `sqrt(chi k_b)`, the unit of dimensionless forces in N.
-    pub fn force_scale(&self, groups: &Groups) -> f64 {
+    pub fn force_scale(&self, groups: &Dimensionless) -> f64 {
         let bending = groups.bending * self.chi() * self.radius.si * self.radius.si;
         (self.chi() * bending).sqrt()
     }
 
-    /// The bending modulus k_b [N m].
-    fn bending(&self, poisson: f64) -> f64 {
-        match &self.stiffness {
-            Stiffness::Homogeneous { young, thickness } => {
-                young.si * thickness.si.powi(3) / (12.0 * (1.0 - poisson * poisson))
-            }
-            Stiffness::Moduli { bending, .. } => bending.si,
+    /// The numbers alone, in SI units.
+    pub fn numbers(&self) -> Physical {
+        Physical {
+            radius: self.radius.si,
+            stiffness: match &self.stiffness {
+                Stiffness::Homogeneous { young, thickness } => {
+                    shell_contact::Stiffness::Solid { young: young.si, thickness: thickness.si }
+                }
+                Stiffness::Moduli { chi, bending } => {
+                    shell_contact::Stiffness::Coating { chi: chi.si, bending: bending.si }
+                }
+            },
+            pressure: self.pressure.si,
+            adhesion: self.adhesion.si,
+            film: self.film.si,
+            surface_tension: self.surface_tension.si,
+            gas_exponent: self.gas_exponent,
         }
-    }
-}
-
-/// Lengths in R0, tensions in chi, pressures in chi / R0.
-pub(super) fn dimensionless_of_physical(physical: &PhysicalCase, poisson: f64) -> Groups {
-    let (radius, chi) = (physical.radius.si, physical.chi());
-    Groups {
-        bending: physical.bending(poisson) / (chi * radius * radius),
-        pressure: physical.pressure.si * radius / chi,
-        adhesion: physical.adhesion.si / chi,
-        film: physical.film.si / radius,
-        potential: physical.potential,
-        surface_tension: physical.surface_tension.si / chi,
-        gas_exponent: physical.gas_exponent,
     }
 }

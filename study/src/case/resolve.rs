@@ -6,14 +6,15 @@ use super::error::{CaseError, Complaint};
 use super::keys::{self, ANY, Key, Kind, POISSON_SKALAK, Range, names};
 use super::name::own_name;
 use super::path::Scale;
-use super::physical::{PhysicalCase, Stiffness, dimensionless_of_physical};
+use super::physical::{PhysicalCase, Stiffness};
 use super::picture;
 use super::problem::BUILT_IN;
 use super::reader::{Reader, Section};
 use super::stability;
 use super::{
-    CatalogueCase, CatalogueEntry, ContactCase, DiagramCase, ElementRange, EventsCase, Groups, Law,
-    LoadedCase, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, ShellCase,
+    CatalogueCase, CatalogueEntry, ContactCase, DiagramCase, Dimensionless, ElementRange, Film,
+    Law, LawName, LoadedCase, MapCase, MeshCase, PathCase, ProblemCase, ResolvedCase, Shell,
+    Wanted,
 };
 use crate::closest::closest;
 use std::cell::RefCell;
@@ -184,7 +185,7 @@ impl<'a> Resolver<'a> {
         let physical = self.table("physical", PHYSICAL);
         let poisson = shell.map_or(0.5, |shell| shell.poisson);
         let parameters = match (dimensionless.exists(), physical.exists()) {
-            (true, false) => self.groups(dimensionless).map(|groups| (groups, None)),
+            (true, false) => self.groups(dimensionless).map(|(groups, film)| (groups, film, None)),
             (false, true) => self.physical(physical, poisson),
             (true, true) => {
                 let why = "the case has both [dimensionless] and [physical]; keep one of them";
@@ -202,7 +203,7 @@ impl<'a> Resolver<'a> {
         };
         let mesh = self.mesh();
         let scale = match &parameters {
-            Some((groups, Some(physical))) => {
+            Some((groups, _, Some(physical))) => {
                 Scale::Known { radius: physical.radius.si, force: physical.force_scale(groups) }
             }
             _ if physical.exists() => Scale::Unknown,
@@ -215,15 +216,17 @@ impl<'a> Resolver<'a> {
         let contact = self.flag(events, &keys::CONTACT);
         let (path, given) = path.unzip();
         let problem = match (shell, parameters, mesh, device, knee, contact) {
-            (Some(shell), Some((groups, physical)), Some(mesh), Some(device), Some(k), Some(c)) => {
+            (Some(shell), Some(parameters), Some(mesh), Some(device), Some(k), Some(c)) => {
+                let (groups, potential, physical) = parameters;
                 let (device, lever) = device;
                 let physical = physical.map(|physical| {
                     Box::new(PhysicalCase { lever, path: given.flatten(), ..*physical })
                 });
-                let events = EventsCase { knee: k, contact: c };
+                let events = Wanted { knee: k, contact: c };
                 Some(ProblemCase::Contact(ContactCase {
                     shell,
                     groups,
+                    potential,
                     physical,
                     mesh,
                     device,
@@ -276,23 +279,23 @@ impl<'a> Resolver<'a> {
         (problem, path)
     }
 
-    pub(super) fn shell(&mut self) -> Option<ShellCase> {
+    pub(super) fn shell(&mut self) -> Option<Shell> {
         let section = self.table("shell", SHELL);
         if section.get("law").is_none() {
-            let hint = format!("give the law of the membrane: {}", Law::NAMES.join(", "));
+            let hint = format!("give the law of the membrane: {}", LawName::NAMES.join(", "));
             self.reader.missing(section, "law", hint);
         }
         let law = self.reader.text(section, "law");
         if let (Some(word), Some(node)) = (law, section.get("law"))
-            && !Law::NAMES.contains(&word)
+            && !LawName::NAMES.contains(&word)
         {
-            let suggestion = closest(word, Law::NAMES).map(ToString::to_string);
-            let allowed = Law::NAMES.iter().map(ToString::to_string).collect();
+            let suggestion = closest(word, LawName::NAMES).map(ToString::to_string);
+            let allowed = LawName::NAMES.iter().map(ToString::to_string).collect();
             let why = Complaint::UnknownWord { allowed, suggestion };
             self.reader.refuse(section, "law", node, why);
         }
-        let skalak = law == Some("skalak");
-        let poisson = if skalak {
+        let law = law.and_then(LawName::of);
+        let poisson = if law == Some(LawName::Skalak) {
             let poisson = Key { kind: Kind::Number(POISSON_SKALAK), ..keys::POISSON };
             self.or_default(section, &poisson)
         } else {
@@ -300,21 +303,20 @@ impl<'a> Resolver<'a> {
         };
         let b = self.number(section, &keys::B);
         let law = match law? {
-            "hooke" => Law::Hooke,
-            "skalak" => Law::Skalak,
-            "mooney-rivlin" => {
+            LawName::Hooke => Law::Hooke,
+            LawName::Skalak => Law::Skalak,
+            LawName::MooneyRivlin => {
                 if section.get("b").is_none() {
                     let hint = "mooney-rivlin needs b, from 0 (neo-Hookean) to 1";
                     self.reader.missing(section, "b", hint);
                 }
                 Law::MooneyRivlin { b: b? }
             }
-            _ => return None,
         };
-        if b.is_some() && !matches!(law, Law::MooneyRivlin { .. }) {
+        if b.is_some() && law.b().is_none() {
             self.note(format!("shell.b has no effect: {law} has no such parameter"));
         }
-        Some(ShellCase { law, poisson: poisson? })
+        Some(Shell { law, poisson: poisson? })
     }
 
     /// `bending`, `pressure`, `surface_tension` and `gas_exponent`.
@@ -326,19 +328,21 @@ impl<'a> Resolver<'a> {
         Some([bending?, pressure?, surface_tension?, gas_exponent?])
     }
 
-    fn groups(&self, section: Section<'_>) -> Option<Groups> {
+    fn groups(&self, section: Section<'_>) -> Option<(Dimensionless, Film)> {
         let others = self.groups_without_film(section);
         let film = self.film(section);
         let [bending, pressure, surface_tension, gas_exponent] = others?;
         let (adhesion, film, potential) = film?;
-        Some(Groups { bending, pressure, adhesion, film, potential, surface_tension, gas_exponent })
+        let groups =
+            Dimensionless { bending, pressure, adhesion, film, surface_tension, gas_exponent };
+        Some((groups, potential))
     }
 
     fn physical(
         &self,
         section: Section<'_>,
         poisson: f64,
-    ) -> Option<(Groups, Option<Box<PhysicalCase>>)> {
+    ) -> Option<(Dimensionless, Film, Option<Box<PhysicalCase>>)> {
         let needed = |key| self.required_quantity(section, key);
         let radius = needed(&keys::RADIUS);
         let stiffness = self.stiffness(section);
@@ -360,7 +364,7 @@ impl<'a> Resolver<'a> {
             lever: None,
             path: None,
         };
-        let groups = dimensionless_of_physical(&physical, poisson);
+        let groups = physical.numbers().groups(poisson);
         let checks = [
             (keys::BENDING, groups.bending),
             (keys::PRESSURE, groups.pressure),
@@ -380,7 +384,7 @@ impl<'a> Resolver<'a> {
                 return None;
             }
         }
-        Some((groups, Some(Box::new(physical))))
+        Some((groups, physical.potential, Some(Box::new(physical))))
     }
 
     /// Young's modulus and thickness, or the two moduli; not both, not halves of both.

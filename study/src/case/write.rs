@@ -3,8 +3,8 @@
 use super::film;
 use super::picture;
 use super::{
-    CatalogueCase, ContactCase, DiagramCase, EventsCase, Groups, MapCase, MeshCase, PathCase,
-    PathEnd, PhysicalPath, ProblemCase, ResolvedCase, ShellCase, StabilityCase,
+    CatalogueCase, ContactCase, DiagramCase, MapCase, MeshCase, PathCase, PathEnd, PhysicalPath,
+    ProblemCase, ResolvedCase, Shell, StabilityCase, Wanted,
 };
 use super::{Law, PhysicalCase, Stiffness};
 use std::fmt::Write as _;
@@ -37,13 +37,13 @@ pub(super) fn contact(out: &mut Lines, case: &ContactCase) {
     match &case.physical {
         None => {
             out.table("dimensionless");
-            groups(out, "", &case.groups);
+            groups(out, "", case);
         }
         Some(given) => {
             out.table("physical");
             physical(out, given);
             out.line("# in dimensionless groups:");
-            groups(out, "#   ", &case.groups);
+            groups(out, "#   ", case);
         }
     }
     mesh(out, case.mesh);
@@ -59,7 +59,7 @@ pub(super) fn contact(out: &mut Lines, case: &ContactCase) {
         (None, Some(stiffness)) => out.number("stiffness", stiffness),
         _ => {}
     }
-    let EventsCase { knee, contact } = case.events;
+    let Wanted { knee, contact } = case.events;
     if knee || contact {
         out.table("events");
         out.line(&format!("knee = {knee}"));
@@ -81,7 +81,7 @@ pub(super) fn catalogue(out: &mut Lines, case: &CatalogueCase) {
     }
 }
 
-pub(super) fn shell(out: &mut Lines, shell: ShellCase) {
+pub(super) fn shell(out: &mut Lines, shell: Shell) {
     out.table("shell");
     out.text("law", &shell.law.to_string());
     out.number("poisson", shell.poisson);
@@ -90,7 +90,8 @@ pub(super) fn shell(out: &mut Lines, shell: ShellCase) {
     }
 }
 
-fn groups(out: &mut Lines, prefix: &str, groups: &Groups) {
+fn groups(out: &mut Lines, prefix: &str, case: &ContactCase) {
+    let groups = &case.groups;
     let all = [
         ("bending", groups.bending, "k_b / (chi R0^2)"),
         ("pressure", groups.pressure, "P_A R0 / chi"),
@@ -100,7 +101,7 @@ fn groups(out: &mut Lines, prefix: &str, groups: &Groups) {
         ("gas_exponent", groups.gas_exponent, "polytropic exponent of the gas"),
     ];
     let all = all.map(|(key, value, meaning)| (key, format!("{value:?}"), meaning));
-    for (key, value, meaning) in all.into_iter().chain(film::written(&groups.potential)) {
+    for (key, value, meaning) in all.into_iter().chain(film::written(&case.potential)) {
         out.line(&format!("{prefix}{:<42} # {meaning}", format!("{key} = {value}")));
     }
 }

@@ -31,7 +31,9 @@ pub fn fit_json(outcome: &Outcome) -> Result<String, serde_json::Error> {
             .iter()
             .map(|(law, fit)| match fit {
                 Ok(chi2) => json!({ "law": law.name(), "chi2_dof": chi2 }),
-                Err(error) => json!({ "law": law.name(), "chi2_dof": null, "error": error }),
+                Err(error) => {
+                    json!({ "law": law.name(), "chi2_dof": null, "error": error.to_string() })
+                }
             })
             .collect();
         fields.insert("laws".to_owned(), Value::Array(laws));

@@ -1,5 +1,6 @@
 //! What a laboratory knows: a TOML file, overrides, and what is fixed, freed or known with an error.
 
+use super::error::{Missing, SetupError, Wish, keys as known_keys};
 use crate::case::document::{self, Override};
 use crate::case::error::{Complaint, LoadError};
 use crate::case::keys::{FRACTION, NOT_NEGATIVE, POISSON_RATIOS, POSITIVE, Range};
@@ -63,7 +64,7 @@ pub struct Lab {
     pub layout: Layout,
 }
 
-/// Options of the command line that change what is known.
+/// What changes what is known: options of the command line, arguments in Python.
 #[derive(Debug, Clone, Copy)]
 pub struct Wishes<'a> {
     /// Keys that keep their known value.
@@ -96,14 +97,14 @@ pub fn keys() -> [(&'static str, Vec<String>); 4] {
     ]
 }
 
-/// Reads what is known.
+/// Reads what is known: a file and overrides, or these alone; messages then call the file `nameless`.
 ///
 /// # Errors
 /// Everything that is wrong with the file and its overrides.
-pub fn load(path: Option<&Path>, overrides: &[Override]) -> Result<Lab, LoadError> {
+pub fn load(path: Option<&Path>, nameless: &str, overrides: &[Override]) -> Result<Lab, LoadError> {
     let (file, text) = match path {
         Some(path) => (path.display().to_string(), source::read(path)?),
-        None => ("--known".to_owned(), String::new()),
+        None => (nameless.to_owned(), String::new()),
     };
     let tree = document::parse(&file, &text, overrides)?;
     let reader = Reader::new(&file);
@@ -230,13 +231,13 @@ impl Lab {
     /// The fit that is asked for; `stated` is the stiffness of the lever that the curve's file states.
     ///
     /// # Errors
-    /// Says which option is wrong, or what is missing.
+    /// Says what is asked for that cannot be, or what is missing.
     pub fn setup(
         &self,
         law: LawName,
         stated: Option<f64>,
         wishes: Wishes<'_>,
-    ) -> Result<Setup, String> {
+    ) -> Result<Setup, SetupError> {
         let mut base = self.base;
         if base[Key::SpringConstant].is_nan() {
             base[Key::SpringConstant] = stated.unwrap_or(f64::NAN);
@@ -265,22 +266,16 @@ impl Lab {
             free(&mut setup, prior.key);
         }
         if setup.base[Key::SpringConstant].is_nan() {
-            return Err(
-                "instrument.spring_constant: missing; neither the file of known values nor the \
-                        curve states it: --set instrument.spring_constant=\"0.08 N/m\""
-                    .to_owned(),
-            );
+            return Err(Missing::SpringConstant.into());
         }
         for name in wishes.free {
-            let key = key("--free", name)?;
+            let key = key(Wish::Free, name)?;
             free(&mut setup, key);
         }
         for name in wishes.fix {
-            let key = key("--fix", name)?;
+            let key = key(Wish::Fix, name)?;
             if setup.base[key].is_nan() {
-                return Err(format!(
-                    "--fix {name}: there is no value to keep; give it in the file of known values"
-                ));
+                return Err(SetupError::NothingToKeep { name: name.clone() });
             }
             setup.free.retain(|k| *k != key);
             setup.priors.retain(|p| p.key != key);
@@ -295,11 +290,7 @@ impl Lab {
         }
         let radius = Key::Radius;
         if setup.base[radius].is_nan() {
-            return Err(
-                "physical.radius: missing; give the optical radius, and its error as radius_sd \
-                        (or --prior radius=\"1.5 um\":\"0.05 um\")"
-                    .to_owned(),
-            );
+            return Err(Missing::Radius.into());
         }
         if let Some(range) = wishes.range {
             setup.range = Some(parse_range(range)?);
@@ -311,15 +302,13 @@ impl Lab {
     ///
     /// # Errors
     /// When the share `b` is looked for and the law has none.
-    pub fn allows(law: LawName, wishes: Wishes<'_>) -> Result<(), String> {
-        let is_b = |name: &str| key("", name).is_ok_and(|key| key == Key::MooneyB);
-        let named = |flag, names: &[String]| names.iter().any(|name| is_b(name)).then_some(flag);
+    pub fn allows(law: LawName, wishes: Wishes<'_>) -> Result<(), SetupError> {
+        let is_b = |name: &str| Key::of(bare(name)) == Some(Key::MooneyB);
+        let named = |wish, names: &[String]| names.iter().any(|name| is_b(name)).then_some(wish);
         let prior = |text: &String| text.split_once('=').is_some_and(|(name, _)| is_b(name));
-        let stated = wishes.prior.iter().any(prior).then_some("--prior");
-        match named("--free", wishes.free).or(stated) {
-            Some(flag) if law != LawName::MooneyRivlin => {
-                Err(format!("{flag} b: the law {} has no b; only mooney-rivlin has", law.name()))
-            }
+        let stated = wishes.prior.iter().any(prior).then_some(Wish::Prior);
+        match named(Wish::Free, wishes.free).or(stated) {
+            Some(wish) if law != LawName::MooneyRivlin => Err(SetupError::NoShare { wish, law }),
             _ => Ok(()),
         }
     }
@@ -347,13 +336,15 @@ fn free(setup: &mut Setup, key: Key) {
     }
 }
 
+/// A name without its table.
+fn bare(name: &str) -> &str {
+    name.rsplit_once('.').map_or(name, |(_, bare)| bare).trim()
+}
+
 /// The key of a name, with or without its table.
-fn key(flag: &str, name: &str) -> Result<Key, String> {
-    let bare = name.rsplit_once('.').map_or(name, |(_, bare)| bare).trim();
-    Key::of(bare).ok_or_else(|| {
-        let known = Key::ALL.map(Key::name).join(", ");
-        format!("{flag} {}: unknown key; allowed: {known}", document::shown(name))
-    })
+fn key(wish: Wish, name: &str) -> Result<Key, SetupError> {
+    let unknown = || SetupError::UnknownKey { wish, name: name.to_owned(), allowed: known_keys() };
+    Key::of(bare(name)).ok_or_else(unknown)
 }
 
 fn dimension(key: Key) -> Option<Dimension> {
@@ -364,26 +355,27 @@ fn dimension(key: Key) -> Option<Dimension> {
     }
 }
 
-fn number(flag: &str, key: Key, text: &str) -> Result<f64, String> {
-    number_of(flag, key.name(), dimension(key), text)
+fn number(wish: Wish, key: Key, text: &str) -> Result<f64, SetupError> {
+    number_of(wish, key.name(), dimension(key), text)
 }
 
 fn number_of(
-    flag: &str,
-    name: &str,
+    wish: Wish,
+    key: &'static str,
     dimension: Option<Dimension>,
     text: &str,
-) -> Result<f64, String> {
+) -> Result<f64, SetupError> {
     let text = text.trim().trim_matches('"');
+    let written = || text.to_owned();
     match dimension {
         Some(dimension) => units::parse(text, dimension)
             .map(|quantity| quantity.si)
-            .map_err(|error| format!("{flag}: {name} = {}: {error}", document::shown(text))),
-        None => {
-            text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| {
-                format!("{flag}: {name} = {}: must be a number", document::shown(text))
-            })
-        }
+            .map_err(|error| SetupError::Quantity { wish, key, text: written(), error }),
+        None => text
+            .parse::<f64>()
+            .ok()
+            .filter(|x| x.is_finite())
+            .ok_or_else(|| SetupError::Number { wish, key, text: written() }),
     }
 }
 
@@ -400,21 +392,18 @@ enum Stated {
     Derived(DerivedPrior),
 }
 
-fn parse_prior(text: &str) -> Result<Stated, String> {
-    const FLAG: &str = "--prior";
+fn parse_prior(text: &str) -> Result<Stated, SetupError> {
+    const WISH: Wish = Wish::Prior;
     let parts = text.split_once('=').and_then(|(k, rest)| Some((k, rest.split_once(':')?)));
     let Some((name, (value, sd))) = parts else {
-        return Err(format!(
-            "{FLAG} {}: expected KEY=VALUE:SD, for example radius=\"1.5 um\":\"0.05 um\"",
-            document::shown(text)
-        ));
+        return Err(SetupError::PriorForm { text: text.to_owned() });
     };
-    let positive =
-        || format!("{FLAG} {}: value and standard deviation must be positive", name.trim());
-    let bare = name.rsplit_once('.').map_or(name, |(_, bare)| bare).trim();
+    let positive = || SetupError::PriorSign { name: name.trim().to_owned() };
+    let bare = bare(name);
     let derived = DERIVED.into_iter().find(|(of, _)| Quantity::Derived(*of).name() == bare);
     if let Some((of, dimension)) = derived {
-        let number = |text| number_of(FLAG, bare, Some(dimension), text);
+        let own = Quantity::Derived(of).name();
+        let number = |text| number_of(WISH, own, Some(dimension), text);
         let (value, sd) = (number(value)?, number(sd)?);
         if sd <= 0.0 || value <= 0.0 {
             return Err(positive());
@@ -422,31 +411,25 @@ fn parse_prior(text: &str) -> Result<Stated, String> {
         return Ok(Stated::Derived(DerivedPrior { of, value, sd }));
     }
     let Some(key) = Key::of(bare) else {
-        let derived = DERIVED.map(|(of, _)| Quantity::Derived(of).name()).join(", ");
-        let known = Key::ALL.map(Key::name).join(", ");
-        return Err(format!(
-            "{FLAG} {}: unknown key; allowed: {derived}, {known}",
-            document::shown(name)
-        ));
+        let derived = DERIVED.into_iter().map(|(of, _)| Quantity::Derived(of).name());
+        let allowed = derived.chain(known_keys()).collect();
+        return Err(SetupError::UnknownKey { wish: WISH, name: name.to_owned(), allowed });
     };
-    let (value, sd) = (number(FLAG, key, value)?, number(FLAG, key, sd)?);
+    let (value, sd) = (number(WISH, key, value)?, number(WISH, key, sd)?);
     if sd <= 0.0 || key.is_logarithmic() && value <= 0.0 {
         return Err(positive());
     }
     Ok(Stated::Key(Prior { key, value, sd }))
 }
 
-fn parse_range(text: &str) -> Result<(f64, f64), String> {
-    const FLAG: &str = "--range";
+fn parse_range(text: &str) -> Result<(f64, f64), SetupError> {
+    const WISH: Wish = Wish::Range;
     let Some((a, b)) = text.split_once(':') else {
-        return Err(format!(
-            "{FLAG} {}: expected two piezo heights such as \"7.5 um\":\"8.6 um\"",
-            document::shown(text)
-        ));
+        return Err(SetupError::RangeForm { text: text.to_owned() });
     };
-    let (a, b) = (number(FLAG, Key::Contact, a)?, number(FLAG, Key::Contact, b)?);
+    let (a, b) = (number(WISH, Key::Contact, a)?, number(WISH, Key::Contact, b)?);
     if a == b {
-        return Err(format!("{FLAG} {}: the heights must differ", document::shown(text)));
+        return Err(SetupError::RangeEmpty { text: text.to_owned() });
     }
     Ok((a, b))
 }

@@ -1,8 +1,13 @@
 //! Fits of measured curves: what is known, the computation, and what becomes files.
 
+mod error;
 pub mod files;
 pub mod lab;
 pub mod plan;
+#[cfg(test)]
+mod tests;
+
+pub use error::{Failure, Fault, Missing, PlanError, SetupError, Wish};
 
 use crate::case::plain_name;
 use identify::data::read::LARGEST;
@@ -34,44 +39,21 @@ pub struct Outcome {
     /// The best.
     pub best: Identification,
     /// Each law's `χ²/dof`, or why it has none.
-    pub laws: Vec<(LawName, Result<f64, String>)>,
-}
-
-/// Why a curve has no fit.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Failure {
-    /// Its file, or what is known, is wrong.
-    Input(String),
-    /// Nothing fits it.
-    NotFound(String),
-    /// Stopped before there was anything to keep.
-    Stopped(String),
-}
-
-impl Failure {
-    /// What happened.
-    pub fn message(&self) -> &str {
-        match self {
-            Failure::Input(message) | Failure::NotFound(message) | Failure::Stopped(message) => {
-                message
-            }
-        }
-    }
+    pub laws: Vec<(LawName, Result<f64, FitError>)>,
 }
 
 /// Reads a list of quantities, or `none`.
-pub fn profiles(text: Option<&str>) -> Result<Profiles, String> {
+///
+/// # Errors
+/// When a quantity has no profile.
+pub fn profiles(text: Option<&str>) -> Result<Profiles, SetupError> {
     match text.map(str::trim) {
         None => Ok(Profiles::WhereNeeded),
         Some("none") => Ok(Profiles::None),
         Some(list) => {
             let each = list.split(',').map(str::trim).map(|name| {
-                Quantity::of(name).ok_or_else(|| {
-                    format!(
-                        "--profile {name}: unknown; allowed: none, or young, thickness, sqrt_chi_kb, \
-                         chi, bending, adhesion, film, radius, apart by commas"
-                    )
-                })
+                Quantity::of(name)
+                    .ok_or_else(|| SetupError::UnknownProfile { name: name.to_owned() })
             });
             Ok(Profiles::These(each.collect::<Result<_, _>>()?))
         }
@@ -121,17 +103,20 @@ pub fn sources(paths: &[PathBuf], lab: &Lab) -> Vec<Source> {
 }
 
 /// The content of a file, unless it is too long for a curve.
-fn bytes(path: &Path) -> Result<Vec<u8>, String> {
-    let file = path.display();
-    let unreadable = |error| format!("{file}: cannot be read: {error}");
+fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+    let file = || path.display().to_string();
+    let unreadable = |source| Failure::Unreadable { file: file(), source };
     let size = std::fs::metadata(path).map_err(unreadable)?.len();
     if size > LARGEST {
-        return Err(format!("{file}: longer than {LARGEST} bytes; this is not a curve"));
+        return Err(Failure::TooLong { file: file() });
     }
     std::fs::read(path).map_err(unreadable)
 }
 
 /// Fits a curve; `attended` may stop it, and then has what was found until then.
+///
+/// # Errors
+/// Why there is no fit; [`Failure::fault`] says whether the input is wrong, or nothing fits, or it was stopped.
 pub fn fit_file(
     source: &Source,
     lab: &Lab,
@@ -141,42 +126,31 @@ pub fn fit_file(
     attended: Attended<'_>,
 ) -> Result<Outcome, Failure> {
     if attended.is_stopped() {
-        return Err(Failure::Stopped(format!("{}: {}", source.label(), FitError::Stopped)));
+        return Err(Failure::Fit { curve: source.label(), error: FitError::Stopped });
     }
-    let path = source.path.display().to_string();
-    let file = source.label();
-    let input = |message: String| Failure::Input(message);
-    let bytes = bytes(&source.path).map_err(input)?;
+    let file = source.path.display().to_string();
+    let label = source.label();
+    let bytes = bytes(&source.path)?;
     let mut layout = lab.layout(wishes);
     layout.curve = source.number.or(layout.curve);
-    let mut curve = read(&path, &bytes, &layout).map_err(|error| {
-        let message = error.to_string();
-        // of a map, which curve
-        let rest = message.strip_prefix(&path).map(|rest| format!("{file}{rest}"));
-        input(rest.unwrap_or(message))
+    let mut curve = read(&file, &bytes, &layout).map_err(|error| Failure::Data {
+        curve: label.clone(),
+        file,
+        error: Box::new(error),
     })?;
-    curve.name.clone_from(&file);
+    curve.name.clone_from(&label);
     let chosen: Vec<LawName> = match laws {
         Laws::All => LawName::ALL.to_vec(),
         Laws::One(law) => vec![law],
-        Laws::Known => match lab.law {
-            Some(law) => vec![law],
-            None => {
-                return Err(input(
-                    "shell.law: missing; say law = \"hooke\", \"mooney-rivlin\" or \"skalak\" in the file \
-                     of known values, or --law NAME, or --law all"
-                        .to_owned(),
-                ));
-            }
-        },
+        Laws::Known => lab.law.into_iter().collect(),
     };
     if let [law] = chosen[..] {
-        Lab::allows(law, wishes).map_err(input)?;
+        Lab::allows(law, wishes)?;
     }
     let mut found: Vec<(LawName, Setup, Result<Identification, FitError>)> = Vec::new();
     let laws = chosen.len() as f64;
     for (done, law) in chosen.into_iter().enumerate() {
-        let setup = lab.setup(law, curve.spring_constant, wishes).map_err(input)?;
+        let setup = lab.setup(law, curve.spring_constant, wishes)?;
         // each law has its share of the progress
         let tell = |progress: Progress| {
             if let Some(listener) = attended.listener {
@@ -188,9 +162,9 @@ pub fn fit_file(
         found.push((law, setup, fitted));
     }
     let chi2 = |i: &Identification| i.report.quality.chi2_dof;
-    let laws: Vec<(LawName, Result<f64, String>)> = found
+    let laws: Vec<(LawName, Result<f64, FitError>)> = found
         .iter()
-        .map(|(law, _, fit)| (*law, fit.as_ref().map(chi2).map_err(ToString::to_string)))
+        .map(|(law, _, fit)| (*law, fit.as_ref().map(chi2).map_err(FitError::clone)))
         .collect();
     found.sort_by(|a, b| {
         let of = |f: &Result<Identification, FitError>| f.as_ref().map_or(f64::INFINITY, chi2);
@@ -198,13 +172,9 @@ pub fn fit_file(
     });
     let second = found.get(1).and_then(|(law, _, fit)| Some((*law, chi2(fit.as_ref().ok()?))));
     let Some((_, setup, best)) = found.into_iter().next() else {
-        return Err(input("no law".to_owned()));
+        return Err(SetupError::from(Missing::Law).into());
     };
-    let mut best = best.map_err(|error| match error {
-        FitError::Stopped => Failure::Stopped(format!("{file}: {error}")),
-        FitError::NoStart | FitError::Model(_) => Failure::NotFound(format!("{file}: {error}")),
-        other => Failure::Input(format!("{file}: {other}")),
-    })?;
+    let mut best = best.map_err(|error| Failure::Fit { curve: label, error })?;
     if let (Some(stated), known) =
         (curve.spring_constant, setup.base[identify::Key::SpringConstant])
         && (stated / known - 1.0).abs() > 1e-6

@@ -1,9 +1,10 @@
 //! `arclen fit --plan CASE`: what a lever, a range and a noise would identify of a shell.
 
+use super::error::{Missing, PlanError};
 use super::lab::{Lab, Wishes};
-use crate::case::{ContactCase, DeviceCase, Law, ProblemCase, ResolvedCase, Stiffness};
+use crate::case::{ContactCase, Device, Law, ProblemCase, ResolvedCase, Stiffness};
+use identify::Key;
 use identify::plan::{Depth, Experiment, QUANTITIES, plan};
-use identify::{Key, LawName};
 use serde_json::json;
 use shell_contact::film::Film;
 use std::fmt::Write as _;
@@ -26,30 +27,20 @@ pub struct Plan {
 }
 
 /// Computes it.
-pub fn planned(case: &ResolvedCase, lab: &Lab, wishes: Wishes<'_>) -> Result<Plan, String> {
-    let name = &case.name;
+///
+/// # Errors
+/// When the case has no lever or no units, and when something has to be known that is not.
+pub fn planned(case: &ResolvedCase, lab: &Lab, wishes: Wishes<'_>) -> Result<Plan, PlanError> {
+    let name = || case.name.clone();
     let ProblemCase::Contact(contact) = &case.problem else {
-        return Err(format!(
-            "{name}: problem: only a contact case has a lever; problem = \"contact\""
-        ));
+        return Err(PlanError::NotContact { case: name() });
     };
-    if contact.device != DeviceCase::Grip {
-        return Err(format!(
-            "{name}: device: a plan reads the path as plate distances and takes its lever from LAB; leave \
-             the table out"
-        ));
+    if contact.device != Device::Grip {
+        return Err(PlanError::Device { case: name() });
     }
-    let Some(noise) = lab.noise else {
-        return Err("instrument.noise: missing; the standard deviation of the force, such as \
-                    --set instrument.noise=\"50 pN\""
-            .to_owned());
-    };
-    let lab = with_case(lab, contact, name)?;
-    let law = match contact.shell.law {
-        Law::Hooke => LawName::Hooke,
-        Law::MooneyRivlin { .. } => LawName::MooneyRivlin,
-        Law::Skalak => LawName::Skalak,
-    };
+    let noise = lab.noise.ok_or(Missing::Noise)?;
+    let lab = with_case(lab, contact, &case.name)?;
+    let law = contact.shell.law.name();
     Lab::allows(law, wishes)?;
     let setup = lab.setup(law, None, wishes)?;
     let reach = f64::from(setup.contacts) * setup.base[Key::Radius];
@@ -60,20 +51,19 @@ pub fn planned(case: &ResolvedCase, lab: &Lab, wishes: Wishes<'_>) -> Result<Pla
         noise,
         samples: SAMPLES,
     };
-    let depths = plan(&experiment, DEPTHS).map_err(|error| format!("{name}: {error}"))?;
-    Ok(Plan { name: name.clone(), noise, depths })
+    let depths =
+        plan(&experiment, DEPTHS).map_err(|error| PlanError::Model { case: name(), error })?;
+    Ok(Plan { name: name(), noise, depths })
 }
 
 /// The laboratory with the case's shell as the truth.
-fn with_case(lab: &Lab, contact: &ContactCase, name: &str) -> Result<Lab, String> {
+fn with_case(lab: &Lab, contact: &ContactCase, name: &str) -> Result<Lab, PlanError> {
+    let case = || name.to_owned();
     let Some(physical) = &contact.physical else {
-        return Err(format!("{name}: physical: missing; a plan needs the shell in physical units"));
+        return Err(PlanError::NotPhysical { case: case() });
     };
     if physical.potential != Film::FourTwo {
-        return Err(format!(
-            "{name}: physical.potential: fits and plans know the potential four-two only; a plan \
-             needs adhesion and film"
-        ));
+        return Err(PlanError::Potential { case: case() });
     }
     let mut lab = lab.clone();
     let poisson = contact.shell.poisson;

@@ -9,7 +9,7 @@ use super::physical::{Laboratory, spoken};
 use super::result::{Cell, MaxwellRecord, Table};
 use super::summary::{aligned, count};
 use super::view::CyclePictures;
-use crate::case::{DeviceCase, ResolvedCase};
+use crate::case::{Device, ResolvedCase};
 use continuation::StopReason;
 use serde::Serialize;
 use serde_json::json;
@@ -22,7 +22,7 @@ pub struct CycleResult {
     /// Name of the case.
     pub case: String,
     /// The device.
-    pub device: DeviceCase,
+    pub device: Device,
     /// Name of its parameter.
     pub parameter: &'static str,
     /// Where the parameter starts, and where it turns.

@@ -6,14 +6,14 @@ use super::resolution::Resolved;
 use super::stability::Stability;
 use super::states::of_contact;
 use super::{Observer, RunError, listen, settings};
-use crate::case::{ContactCase, DeviceCase, EventsCase, Law, ResolvedCase};
+use crate::case::{ContactCase, ResolvedCase};
 use crate::record::view::{self, Curve, Mark, Profile, Shape};
 use crate::record::{Cell, ContactRow, EventRecord, MaxwellRecord, Pictures, Table, TraceResult};
 use continuation::{Event, Point, Problem, Settings, StopReason, TraceError};
 use shell_contact::device::{MaxwellPoint, StartError, maxwell_points, trace_loaded};
 use shell_contact::landmarks;
 use shell_contact::{ContactBranch, ContactProblem, Device, LoadedProblem};
-use shell_contact::{Dimensionless, Mesh, Shell, trace_contact};
+use shell_contact::{Mesh, trace_contact};
 use std::time::Instant;
 
 /// Samples along the meridian in pictures of shapes and profiles.
@@ -92,11 +92,9 @@ fn traced(
 ) -> Result<Traced, RunError> {
     let clock = Instant::now();
     let problem = shell(case, contact)?;
-    let (mut branch, maxwell) = follow(case, device(contact), &problem, observer)?;
-    let EventsCase { knee, contact: touch } = contact.events;
-    let wanted = landmarks::Wanted { knee, contact: touch };
+    let (mut branch, maxwell) = follow(case, contact.device, &problem, observer)?;
     // states of a traced branch are admissible: there is nothing that could be refused
-    let _ = landmarks::locate(&problem, device(contact), &mut branch.branch, wanted);
+    let _ = landmarks::locate(&problem, contact.device, &mut branch.branch, contact.events);
     Ok(Traced { problem, branch, maxwell, seconds: clock.elapsed().as_secs_f64() })
 }
 
@@ -187,15 +185,6 @@ fn maxwell(device: Device, point: &MaxwellPoint) -> MaxwellRecord {
     }
 }
 
-/// The device of a case.
-pub(super) fn device(contact: &ContactCase) -> Device {
-    match contact.device {
-        DeviceCase::Grip => Device::Grip,
-        DeviceCase::DeadLoad => Device::DeadLoad,
-        DeviceCase::Cantilever { stiffness } => Device::Cantilever { stiffness },
-    }
-}
-
 /// The tracer's settings under a device.
 pub(super) fn loaded_path(case: &ResolvedCase) -> Settings {
     let settings = path(case);
@@ -269,7 +258,7 @@ pub(super) fn problem(
     case: &ResolvedCase,
     contact: &ContactCase,
 ) -> Result<ContactProblem, RunError> {
-    if contact.device != DeviceCase::Grip {
+    if contact.device != Device::Grip {
         let (case, device) = (case.name.clone(), contact.device.name());
         return Err(RunError::Device { case, device });
     }
@@ -284,31 +273,12 @@ pub(super) fn shell(
     build(contact).map_err(|error| RunError::Parameters { case: case.name.clone(), error })
 }
 
-/// The law of the membrane.
-pub(super) fn law(law: Law) -> shell_contact::Law {
-    match law {
-        Law::Hooke => shell_contact::Law::Hooke,
-        Law::MooneyRivlin { b } => shell_contact::Law::MooneyRivlin { b },
-        Law::Skalak => shell_contact::Law::Skalak,
-    }
-}
-
 fn build(contact: &ContactCase) -> Result<ContactProblem, shell_contact::ParameterError> {
-    let shell = Shell { law: law(contact.shell.law), poisson: contact.shell.poisson };
-    let g = &contact.groups;
-    let groups = Dimensionless {
-        bending: g.bending,
-        pressure: g.pressure,
-        adhesion: g.adhesion,
-        film: g.film,
-        surface_tension: g.surface_tension,
-        gas_exponent: g.gas_exponent,
-    };
     let mesh = match contact.mesh.grading {
         Some(ratio) => Mesh::graded(contact.mesh.elements, ratio)?,
         None => Mesh::uniform(contact.mesh.elements)?,
     };
-    ContactProblem::with_potential(&shell, &groups, mesh, g.potential)
+    ContactProblem::with_potential(&contact.shell, &contact.groups, mesh, contact.potential)
 }
 
 /// One point in the contract's columns.

@@ -1,12 +1,10 @@
 //! A cycle: the complete branch, the path once to and fro, and what it dissipates.
 
-use super::contact::{
-    SAMPLES, device, follow, loaded_path, no_start, not_held, path, result, row, shell,
-};
+use super::contact::{SAMPLES, follow, loaded_path, no_start, not_held, path, result, row, shell};
 use super::stability::Stability as Scanned;
 use super::two_plates::{self, BetweenPlates, WithPlates};
 use super::{Observer, RunError, listen, ways};
-use crate::case::{ContactCase, DeviceCase, ResolvedCase, StabilityCase, TwoPlatesCase};
+use crate::case::{ContactCase, ResolvedCase, StabilityCase, TwoPlatesCase};
 use crate::record::view::{Curve, CyclePictures, Examined, Mark, Shape};
 use crate::record::{
     CycleResult, FoldRecord, JumpRecord, MaxwellRecord, PathModes, PathRow, ReportedCycle,
@@ -31,7 +29,7 @@ pub(super) fn half(
 ) -> Result<CycleResult, RunError> {
     let clock = Instant::now();
     let problem = shell(case, contact)?;
-    let device = device(contact);
+    let device = contact.device;
     let (traced, maxwell) = follow(case, device, &problem, observer)?;
     let first = &traced.branch.points[0];
     let cycle = if device == Device::Grip {
@@ -97,7 +95,7 @@ impl WithPlates for Travel<'_, '_> {
     fn with<P: BetweenPlates>(self, problem: &P, x: &[f64], p: &[f64]) -> Self::Output {
         let Travel { case, plates, reported, observer } = self;
         let clock = Instant::now();
-        let name = problem.parameters()[0].name;
+        let name = &problem.parameters()[0].name;
         let settings = two_plates::settings(case, name);
         let traced = Tracer::new(problem, name, x, p, settings.clone())
             .and_then(|tracer| tracer.watching(&force_watches()))
@@ -135,7 +133,7 @@ impl WithPlates for Travel<'_, '_> {
         let stiffness = plates.plates[0].and_then(|plate| plate.stiffness);
         let travelled = Travelled {
             case,
-            device: stiffness.map_or(DeviceCase::Grip, |k| DeviceCase::Cantilever { stiffness: k }),
+            device: stiffness.map_or(Device::Grip, |k| Device::Cantilever { stiffness: k }),
             parameter: problem.device().parameter_name(),
             both_parities: true,
             balance: balance(problem, &cycle).ok(),
@@ -158,7 +156,7 @@ impl WithPlates for Travel<'_, '_> {
 /// A cycle with what was found beside it.
 struct Travelled<'t> {
     case: &'t ResolvedCase,
-    device: DeviceCase,
+    device: Device,
     parameter: &'static str,
     both_parities: bool,
     balance: Option<Balance>,
@@ -235,17 +233,9 @@ fn go<P: Loading>(
     })
 }
 
-/// The word for a direction.
-pub(super) fn word(direction: Direction) -> &'static str {
-    match direction {
-        Direction::Approach => "approach",
-        Direction::Retract => "retract",
-    }
-}
-
 fn path_row(step: usize, point: &CyclePoint, modes: Option<PathModes>) -> PathRow {
     PathRow {
-        direction: word(point.direction),
+        direction: point.direction.name(),
         step,
         z0: point.z0,
         force: point.force,
@@ -259,7 +249,7 @@ fn path_row(step: usize, point: &CyclePoint, modes: Option<PathModes>) -> PathRo
 fn jump_record(cycle: &Cycle, jump: &shell_contact::device::Jump) -> JumpRecord {
     let (before, after) = ends(cycle, jump);
     JumpRecord {
-        direction: word(jump.direction),
+        direction: jump.direction.name(),
         parameter: jump.parameter,
         z0_before: before.map(|p| p.z0),
         z0_after: after.map(|p| p.z0),
@@ -346,7 +336,7 @@ fn pictures(
         complete.marks.push(Mark { kind: "fold".to_owned(), x, y });
     }
     let way = |direction: Direction| {
-        let mut curve = labelled(word(direction));
+        let mut curve = labelled(direction.name());
         for (k, point) in cycle.points.iter().enumerate() {
             if cycle.jumps.iter().any(|jump| jump.after == Some(k)) {
                 // jumps are arrows, not lines
@@ -382,7 +372,7 @@ fn pictures(
             Some(Shape { label, ..shape(point)? })
         };
         let pair = [of(before, "before"), of(after, "after")];
-        let label = format!("{title}, jump {}: {}", number + 1, word(jump.direction));
+        let label = format!("{title}, jump {}: {}", number + 1, jump.direction.name());
         pictures.shapes.push((label, pair.into_iter().flatten().collect()));
     }
     pictures

@@ -81,7 +81,7 @@ impl Exploration<'_, '_> {
         setup: &Setup,
     ) -> Result<(Diagram, f64), DiagramError> {
         let Exploration { settings, saved, keep, observer, clock } = self;
-        let (name, u, p) = (setup.parameter, &setup.u, &setup.p);
+        let (name, u, p) = (&setup.parameter, &setup.u, &setup.p);
         let explorer = Explorer::new(problem, name, u, p, settings, &setup.watches)?;
         let mut explorer = explorer.resume(saved.finished, saved.unfinished)?;
         let seconds = || saved.seconds + clock.elapsed().as_secs_f64();
@@ -134,7 +134,7 @@ impl WithPlates for Exploration<'_, '_> {
 
     fn with<P: BetweenPlates>(self, problem: &P, x: &[f64], p: &[f64]) -> Self::Output {
         let setup = Setup {
-            parameter: problem.parameters()[0].name,
+            parameter: problem.parameters()[0].name.clone(),
             u: x.to_vec(),
             p: p.to_vec(),
             settings: Settings::default(),

@@ -93,7 +93,7 @@ fn names<P: Problem>(problem: &P) -> Vec<String> {
     if own.is_empty() {
         return (0..problem.dim().min(MOST_UNKNOWNS)).map(|i| format!("u[{i}]")).collect();
     }
-    own.iter().map(|name| (*name).to_owned()).collect()
+    own.iter().map(|name| name.to_string()).collect()
 }
 
 /// A few cycles of a branch over time.

@@ -1,7 +1,6 @@
 //! The ring-loaded shell. The library's contact angle is in radians, a case's and a result's in
 //! degrees.
 
-use super::contact::law;
 use super::form::{StabilityColumns, certified, form};
 use super::resolution::Resolved;
 use super::states::of_ring_load;
@@ -11,7 +10,7 @@ use crate::record::view::{Curve, Examined, Mark, Shape, Stability};
 use crate::record::{Cell, EventRecord, Pictures, RING, Table, TraceResult};
 use continuation::diagram::{Diagram, Origin};
 use continuation::{Branch, Point, Settings, TraceError, Tracer, Watch};
-use shell_contact::{RingGroups, RingLoadProblem, Shell};
+use shell_contact::RingLoadProblem;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -45,14 +44,8 @@ pub(super) struct Start {
 
 /// The problem of a case, at the path's start.
 pub(super) fn start(case: &ResolvedCase, ring: &RingLoadCase) -> Result<Start, RunError> {
-    let shell = Shell { law: law(ring.shell.law), poisson: ring.shell.poisson };
-    let groups = RingGroups {
-        bending: ring.bending,
-        pressure: ring.pressure,
-        gas_exponent: ring.gas_exponent,
-    };
     let grading = ring.mesh.grading.unwrap_or(shell_contact::ring_load::DEFAULT_GRADING);
-    let problem = RingLoadProblem::new(&shell, &groups, ring.mesh.elements, grading)
+    let problem = RingLoadProblem::new(&ring.shell, &ring.groups, ring.mesh.elements, grading)
         .map_err(|error| RunError::Parameters { case: case.name.clone(), error })?;
     let (u, p) = (problem.initial_state(), problem.parameters_at(case.path.start.to_radians()));
     Ok(Start { problem, u, p })

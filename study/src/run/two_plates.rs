@@ -14,7 +14,7 @@ use shell_contact::modes::WholeShell;
 use shell_contact::two_plates::{
     Plate, Support, SupportedProblem, TwoPlatesGroups, TwoPlatesProblem,
 };
-use shell_contact::{ContactBranch, Mesh, Observation, Resolution, Shell, force_watches};
+use shell_contact::{ContactBranch, Mesh, Observation, Resolution, force_watches};
 use std::time::Instant;
 
 /// The columns that follow the fixed ones.
@@ -98,7 +98,6 @@ pub(super) fn visit<V: WithPlates>(
 }
 
 fn build(case: &TwoPlatesCase) -> Result<TwoPlatesProblem, shell_contact::ParameterError> {
-    let shell = Shell { law: super::contact::law(case.shell.law), poisson: case.shell.poisson };
     let [top, bottom] = case.plates;
     // a plate that is not there attracts nothing; its film has any length
     let other = top.or(bottom).map_or(1.0, |plate| plate.film);
@@ -116,7 +115,7 @@ fn build(case: &TwoPlatesCase) -> Result<TwoPlatesProblem, shell_contact::Parame
     };
     let mesh = Mesh::graded(case.mesh.elements, case.mesh.grading.unwrap_or(1.0))?;
     let [above, below] = case.plates.map(|plate| plate.map_or_else(Film::default, |p| p.potential));
-    TwoPlatesProblem::with_potentials(&shell, &groups, mesh, (above, below))
+    TwoPlatesProblem::with_potentials(&case.shell, &groups, mesh, (above, below))
 }
 
 /// Trace a case.
@@ -139,7 +138,7 @@ impl WithPlates for Trace<'_, '_> {
     fn with<P: BetweenPlates>(self, problem: &P, x: &[f64], p: &[f64]) -> Self::Output {
         let Trace { case, observer } = self;
         let clock = Instant::now();
-        let name = problem.parameters()[0].name;
+        let name = &problem.parameters()[0].name;
         let branch = Tracer::new(problem, name, x, p, settings(case, name))
             .and_then(|tracer| tracer.watching(&force_watches()))
             .map(|tracer| tracer.run(&mut listen(observer)))

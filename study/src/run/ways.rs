@@ -1,6 +1,5 @@
 //! A cycle for a report: the ways to and fro as curves with their states.
 
-use super::cycle::word;
 use super::states;
 use crate::record::{ContactRow, ReportedCycle, Table, Way};
 use continuation::Problem;
@@ -79,7 +78,7 @@ fn way(
     let jumps: Vec<usize> = landed
         .filter_map(|jump| jump.after.filter(|after| span.contains(after)).and_then(within))
         .collect();
-    let label = points.last().map_or("", |point| word(point.direction));
+    let label = points.last().map_or("", |point| point.direction.name());
     Way { label, table, jumps, states: Vec::new() }
 }
 

@@ -36,7 +36,7 @@ impl Pressurised {
                 film: 0.1,
                 plate: 5.0,
             },
-            parameters: [Parameter { name: "pressure", unit: "chi/R0", scale: 0.1 }],
+            parameters: [Parameter::new("pressure", "chi/R0", 0.1)],
         }
     }
 }

@@ -241,10 +241,9 @@ impl Lanczos {
         EigenReport { solves: self.solves, wanted: count, converged, complete }
     }
 
-    /// Builds the basis; returns whether nothing wanted is missing.
-    fn iterate(
+    /// The first vector of a new basis; false where there is none, or none is wanted.
+    fn begin(
         &mut self,
-        wanted: Wanted,
         count: usize,
         mass: &mut impl FnMut(&[f64], &mut [f64]),
         solve: &mut impl FnMut(&mut [f64]),
@@ -254,7 +253,7 @@ impl Lanczos {
         (self.chained, self.beta) = (false, 0.0);
         self.lost.clear();
         if count == 0 {
-            return true;
+            return false;
         }
         // One application in advance: if a single eigenvalue dominates, as at a fold, the first
         // vector is its eigenvector and its size does not drown the others.
@@ -266,7 +265,19 @@ impl Lanczos {
         self.w.copy_from_slice(&self.u);
         solve(&mut self.w);
         self.solves = 1;
-        if self.append(false, mass).is_none() && !self.append_random(mass) {
+        self.append(false, mass).is_some() || self.append_random(mass)
+    }
+
+    /// Builds the basis; returns whether nothing wanted is missing.
+    fn iterate(
+        &mut self,
+        wanted: Wanted,
+        count: usize,
+        mass: &mut impl FnMut(&[f64], &mut [f64]),
+        solve: &mut impl FnMut(&mut [f64]),
+        start: Option<&[f64]>,
+    ) -> bool {
+        if !self.begin(count, mass, solve, start) {
             return true; // no mass, no eigenvalues
         }
         let (mut check, mut last_break) = ((count + 3).max(4), 0);

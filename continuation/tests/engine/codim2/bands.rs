@@ -4,7 +4,8 @@ use super::{account, follow};
 use continuation::codim2::FoldCurve;
 use continuation::linalg::{Matrix, SymmetricBand};
 use continuation::{
-    Branch, EvalError, EventKind, ParamId, Parameter, Problem, Settings, Stability, Tracer, Watch,
+    Branch, EvalError, EventKind, Name, ParamId, Parameter, Problem, Settings, Stability, Tracer,
+    Watch, names,
 };
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -27,10 +28,7 @@ impl Problem for Ignition {
         self.n
     }
     fn parameters(&self) -> &[Parameter] {
-        &[
-            Parameter { name: "lambda", unit: "", scale: 1.0 },
-            Parameter { name: "epsilon", unit: "", scale: 0.1 },
-        ]
+        const { &[Parameter::new("lambda", "", 1.0), Parameter::new("epsilon", "", 0.1)] }
     }
     fn new_jacobian(&self) -> SymmetricBand {
         SymmetricBand::new(self.n, 1)
@@ -76,8 +74,8 @@ impl Problem for Ignition {
     fn stability(&self) -> Stability {
         Stability::EnergyHessian
     }
-    fn observables(&self) -> &[&'static str] {
-        &["middle"]
+    fn observables(&self) -> &[Name] {
+        names!["middle"]
     }
     fn observe(&self, u: &[f64], _: &[f64], out: &mut [f64]) -> Result<(), EvalError> {
         out[0] = u[self.n / 2];

@@ -37,10 +37,7 @@ impl Problem for Column {
         self.n
     }
     fn parameters(&self) -> &[Parameter] {
-        &[
-            Parameter { name: "load", unit: "", scale: 10.0 },
-            Parameter { name: "foundation", unit: "", scale: 100.0 },
-        ]
+        const { &[Parameter::new("load", "", 10.0), Parameter::new("foundation", "", 100.0)] }
     }
     fn new_jacobian(&self) -> Band {
         Band::new(self.n, 2, 2)
@@ -116,7 +113,7 @@ fn buckling_of_a_column_on_an_elastic_foundation() {
 }
 
 /// AUTO's `enz` with the rate `q`: on the symmetric branch `3 + q R'(s) = 0`, `p = s + q R(s)`.
-fn enz(s: &[f64], p: &[f64], r: &mut [f64]) {
+pub(crate) fn enz(s: &[f64], p: &[f64], r: &mut [f64]) {
     let rate = |s: f64| p[1] * s / (1.0 + s + s * s);
     r[0] = p[0] - 2.0 * s[0] + s[1] - rate(s[0]);
     r[1] = p[0] - 2.0 * s[1] + s[0] - rate(s[1]);

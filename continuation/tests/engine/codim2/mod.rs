@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 mod bands;
-mod branch_points;
+pub(crate) mod branch_points;
 mod hopf;
 mod invariance;
 mod large;
@@ -110,7 +110,7 @@ fn unusable_starts_are_refused_with_a_reason() {
     assert!(matches!(refuse(&other, "lambda"), Some(CurveError::Foreign { .. })));
 }
 
-fn co_oxidation() -> impl Problem {
+pub(crate) fn co_oxidation() -> impl Problem {
     DenseProblem::from_residual(3, &["p", "k"], |u, p, r| {
         let [x, y, s] = [u[0], u[1], u[2]];
         let z = 1.0 - x - y - s;
@@ -121,7 +121,7 @@ fn co_oxidation() -> impl Problem {
     .boxed()
 }
 
-fn co_branch<P: Problem>(problem: &P) -> Branch {
+pub(crate) fn co_branch<P: Problem>(problem: &P) -> Branch {
     let mut u = vec![0.1, 0.2, 0.5];
     continuation::newton(problem, &mut u, &[1.0, 0.4], &Default::default()).unwrap();
     trace(problem, "p", &u, &[1.0, 0.4], 2.5)

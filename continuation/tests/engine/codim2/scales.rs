@@ -9,6 +9,10 @@ use continuation::{
 };
 use std::ops::ControlFlow;
 
+/// A function of unknowns and parameters.
+trait Values: Fn(&[f64], &[f64], &mut [f64]) + Send + Sync {}
+impl<F: Fn(&[f64], &[f64], &mut [f64]) + Send + Sync> Values for F {}
+
 /// A problem with its derivatives: `f`, then `∂f_i/∂(u, p)_j` row by row.
 struct Exact<F, D> {
     n: usize,
@@ -17,10 +21,9 @@ struct Exact<F, D> {
     d: D,
 }
 
-impl<F: Fn(&[f64], &[f64], &mut [f64]), D: Fn(&[f64], &[f64], &mut [f64])> Exact<F, D> {
+impl<F: Values, D: Values> Exact<F, D> {
     fn new(n: usize, names: &[&'static str], f: F, d: D) -> Self {
-        let parameters =
-            names.iter().map(|&name| Parameter { name, unit: "", scale: 1.0 }).collect();
+        let parameters = names.iter().map(|name| Parameter::new(name, "", 1.0)).collect();
         Exact { n, parameters, f, d }
     }
 
@@ -32,7 +35,7 @@ impl<F: Fn(&[f64], &[f64], &mut [f64]), D: Fn(&[f64], &[f64], &mut [f64])> Exact
     }
 }
 
-impl<F: Fn(&[f64], &[f64], &mut [f64]), D: Fn(&[f64], &[f64], &mut [f64])> Problem for Exact<F, D> {
+impl<F: Values, D: Values> Problem for Exact<F, D> {
     type Jacobian = Dense;
 
     fn dim(&self) -> usize {

@@ -9,7 +9,7 @@ use continuation::{EventKind, Parameter, Progress, Settings, StopReason, Tracer}
 use std::ops::ControlFlow;
 
 const fn parameter(name: &'static str) -> Parameter {
-    Parameter { name, unit: "", scale: 1.0 }
+    Parameter::new(name, "", 1.0)
 }
 
 /// Bautin's normal form: cycles of radius `√ρ` where `μ + s ρ − ρ² = 0`, limit points at `μ = −s²/4`.

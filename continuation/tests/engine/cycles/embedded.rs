@@ -47,7 +47,7 @@ pub(crate) struct Embedded {
     inverse: Vec<f64>,
 }
 
-const PARAMETERS: [Parameter; 1] = [Parameter { name: "p", unit: "", scale: 1.0 }];
+static PARAMETERS: [Parameter; 1] = [Parameter::new("p", "", 1.0)];
 
 impl Embedded {
     pub(crate) fn new(beside: Vec<Beside>, random: &mut Random, bend: f64) -> Self {

@@ -111,7 +111,7 @@ fn an_interrupt_keeps_what_was_traced_and_is_not_complete() {
 fn moebius(s: f64) -> System {
     let mut system = hopf_form();
     system.n = 4;
-    system.parameters[1].name = "s";
+    system.parameters[1].name = "s".into();
     system.field = |u, p, r| {
         let g = 1.0 - u[0] * u[0] - u[1] * u[1];
         r[0] = g * u[0] - u[1];

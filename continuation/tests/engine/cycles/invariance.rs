@@ -18,7 +18,7 @@ struct Scaled {
 
 impl Scaled {
     fn new(length: f64, time: f64, unit: f64, factor: f64) -> Self {
-        let parameters = [Parameter { name: "q", unit: "", scale: 1.0 / unit }];
+        let parameters = [Parameter::new("q", "", 1.0 / unit)];
         Scaled { length, time, unit, factor, parameters }
     }
 }

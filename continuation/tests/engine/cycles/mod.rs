@@ -7,7 +7,7 @@ mod exact;
 mod explore;
 mod invariance;
 mod starts;
-mod systems;
+pub(crate) mod systems;
 mod textbook;
 
 use continuation::cycles::{Cycle, CycleBranch, CycleSettings, trace};

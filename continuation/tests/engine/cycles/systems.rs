@@ -16,7 +16,7 @@ pub(crate) struct System {
 }
 
 const fn parameter(name: &'static str, scale: f64) -> Parameter {
-    Parameter { name, unit: "", scale }
+    Parameter::new(name, "", scale)
 }
 
 impl Problem for System {

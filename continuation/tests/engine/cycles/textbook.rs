@@ -177,7 +177,7 @@ fn roessler_doubles_its_period_where_shooting_says() {
 fn no_standstill_in_a_canard_explosion() {
     let system = System {
         n: 2,
-        parameters: vec![continuation::Parameter { name: "I", unit: "", scale: 1.0 }],
+        parameters: vec![continuation::Parameter::new("I", "", 1.0)],
         field: |u, p, r| {
             r[0] = u[0] - u[0].powi(3) / 3.0 - u[1] + p[0];
             r[1] = 0.08 * (u[0] + 0.7 - 0.8 * u[1]);

@@ -53,7 +53,7 @@ impl Problem for Polynomial {
     }
 
     fn parameters(&self) -> &[Parameter] {
-        const P: &[Parameter] = &[Parameter { name: "p", unit: "", scale: 1.0 }];
+        const P: &[Parameter] = &[Parameter::new("p", "", 1.0)];
         P
     }
 

@@ -96,7 +96,7 @@ impl<J: Entries> Problem for Modes<J> {
         self.c.len()
     }
     fn parameters(&self) -> &[Parameter] {
-        &[Parameter { name: "p", unit: "", scale: 1.0 }]
+        const { &[Parameter::new("p", "", 1.0)] }
     }
     fn new_jacobian(&self) -> J {
         J::with_band(self.dim(), if self.layers[0].is_empty() { 0 } else { REACH })
@@ -153,7 +153,7 @@ pub(crate) fn trace<P: Problem>(problem: &P, from: f64, to: f64) -> Branch {
 
 pub(crate) fn trace_with<P: Problem>(problem: &P, from: f64, settings: Settings) -> Branch {
     let u = vec![0.0; problem.dim()];
-    let name = problem.parameters()[0].name;
+    let name = &problem.parameters()[0].name;
     Tracer::new(problem, name, &u, &[from], settings)
         .unwrap()
         .run(&mut |_| ControlFlow::Continue(()))

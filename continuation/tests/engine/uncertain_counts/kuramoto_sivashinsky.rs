@@ -51,7 +51,7 @@ impl<J: Entries> Problem for KuramotoSivashinsky<J> {
         self.n
     }
     fn parameters(&self) -> &[Parameter] {
-        &[Parameter { name: "nu", unit: "", scale: 1.0 }]
+        const { &[Parameter::new("nu", "", 1.0)] }
     }
     fn new_jacobian(&self) -> J {
         J::with_band(self.n, 2)

@@ -1,22 +1,19 @@
 //! A case under a ring load: bending stiffness and a little gas, the path in degrees.
 
 use super::{ProblemCase, Read};
+use crate::case::MeshCase;
 use crate::case::keys::{self, Absent, Key, Range, names};
 use crate::case::resolve::{HOMES, Resolver};
 use crate::case::write::{self, Lines};
-use crate::case::{MeshCase, ShellCase};
+use shell_contact::{RingGroups, Shell};
 
 /// A shell under a ring load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RingLoadCase {
     /// The shell's material.
-    pub shell: ShellCase,
-    /// `k_b / (chi R0²)`.
-    pub bending: f64,
-    /// `P_A R0 / chi`.
-    pub pressure: f64,
-    /// The polytropic exponent of the gas: 0 is constant pressure.
-    pub gas_exponent: f64,
+    pub shell: Shell,
+    /// The dimensionless groups.
+    pub groups: RingGroups,
     /// The mesh.
     pub mesh: MeshCase,
 }
@@ -55,7 +52,8 @@ impl Resolver<'_> {
         let path = self.path(None, ANGLE, ANGLE);
         let problem = match (shell, bending, pressure, gas_exponent, mesh) {
             (Some(shell), Some(bending), Some(pressure), Some(gas_exponent), Some(mesh)) => {
-                let case = RingLoadCase { shell, bending, pressure, gas_exponent, mesh };
+                let groups = RingGroups { bending, pressure, gas_exponent };
+                let case = RingLoadCase { shell, groups, mesh };
                 Some(ProblemCase::RingLoad(case))
             }
             _ => None,
@@ -69,8 +67,8 @@ pub(super) fn write(out: &mut Lines, case: &RingLoadCase) {
     out.text("problem", "ring-load");
     write::shell(out, case.shell);
     out.table("dimensionless");
-    out.number("bending", case.bending);
-    out.number("pressure", case.pressure);
-    out.number("gas_exponent", case.gas_exponent);
+    out.number("bending", case.groups.bending);
+    out.number("pressure", case.groups.pressure);
+    out.number("gas_exponent", case.groups.gas_exponent);
     write::mesh(out, case.mesh);
 }

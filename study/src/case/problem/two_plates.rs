@@ -7,14 +7,14 @@ use crate::case::keys::{self, ANY, POSITIVE, names};
 use crate::case::reader::Section;
 use crate::case::resolve::{CONTACT_START, HOMES, Resolver};
 use crate::case::write::{self, Lines};
-use crate::case::{MeshCase, ShellCase, film};
+use crate::case::{MeshCase, Shell, film};
 use shell_contact::film::Film;
 
 /// A microbubble from pole to pole between two plates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TwoPlatesCase {
     /// The shell's material.
-    pub shell: ShellCase,
+    pub shell: Shell,
     /// `k_b / (chi R0²)`.
     pub bending: f64,
     /// `P_A R0 / chi`.

@@ -12,7 +12,7 @@ fn dlvo(text: &str) -> Result<LoadedCase, String> {
 fn another_potential_is_read_and_written() {
     let case = dlvo(DLVO).unwrap().case;
     let ProblemCase::Contact(contact) = &case.problem else { panic!("{case:?}") };
-    let Film::Dlvo(film) = contact.groups.potential else { panic!("{contact:?}") };
+    let Film::Dlvo(film) = contact.potential else { panic!("{contact:?}") };
     assert_eq!((film.debye(), contact.groups.adhesion), (0.15, 2e-3));
     let text = case.to_toml();
     assert!(text.contains("potential = \"dlvo\"") && text.contains("debye = 0.15"), "{text}");
@@ -65,7 +65,7 @@ fn surface_forces_make_adhesion_and_film() {
     let case = read(text);
     let ProblemCase::Contact(contact) = &case.problem else { panic!("{case:?}") };
     let (groups, physical) = (contact.groups, contact.physical.as_ref().unwrap());
-    let Film::Dlvo(film) = groups.potential else { panic!("{groups:?}") };
+    let Film::Dlvo(film) = contact.potential else { panic!("{groups:?}") };
     // A = 12π w0 δ²/(1 − 2ρ)
     let (w0, length) = (groups.adhesion * 0.05, groups.film * 1e-6);
     let hamaker = 12.0 * std::f64::consts::PI * w0 * length * length / (1.0 - 2.0 * film.debye());
@@ -111,7 +111,7 @@ fn an_override_exchanges_the_potential() {
         with("polymer", &[&dlvo[..], &["physical.double_layer=2 mJ/m2"]].concat()).unwrap();
     assert!(loaded.notes.iter().any(|note| note.starts_with("physical.film is passed over")));
     let ProblemCase::Contact(contact) = &loaded.case.problem else { panic!("{loaded:?}") };
-    assert!(matches!(contact.groups.potential, Film::Dlvo(_)));
+    assert!(matches!(contact.potential, Film::Dlvo(_)));
     // what is given with it still must go with it
     let both = with("polymer", &[&dlvo[..], &["physical.film=20 nm"]].concat()).unwrap_err();
     assert!(both.to_string().contains("potential dlvo has no such key"), "{both}");

@@ -113,7 +113,7 @@ fn a_dimensionless_case_resolves_with_its_defaults() {
     let case = read(GOOD);
     assert_eq!(case.name, "a");
     let ProblemCase::Contact(contact) = &case.problem else { panic!("{case:?}") };
-    assert_eq!(contact.shell, ShellCase { law: Law::Hooke, poisson: 0.5 });
+    assert_eq!(contact.shell, Shell { law: Law::Hooke, poisson: 0.5 });
     assert_eq!(contact.groups.surface_tension, 0.0);
     assert_eq!(contact.groups.gas_exponent, 1.07);
     assert_eq!(contact.mesh, MeshCase { elements: 200, grading: None });
@@ -383,7 +383,7 @@ fn overrides_replace_values_and_say_where_they_came_from() {
     let case = set("shell.law=skalak").unwrap().case;
     assert!(matches!(
         case.problem,
-        ProblemCase::Contact(ContactCase { shell: ShellCase { law: Law::Skalak, .. }, .. })
+        ProblemCase::Contact(ContactCase { shell: Shell { law: Law::Skalak, .. }, .. })
     ));
     let case = read_with(PHYSICAL, &[given("physical.film=2.5 um")]).unwrap().case;
     let ProblemCase::Contact(contact) = &case.problem else { panic!("{case:?}") };

@@ -43,7 +43,7 @@ impl Family for ContactCase {
         let problem = contact::problem(case, self)?;
         let start = case.path.start;
         let setup = Setup {
-            parameter: "z0",
+            parameter: "z0".into(),
             u: problem.initial_state(),
             p: problem.parameters_at(start).to_vec(),
             settings: Settings::default(),

@@ -34,7 +34,7 @@ impl Family for RingLoadCase {
         let reported = work.reported;
         let ring_load::Start { problem, u, p } = ring_load::start(case, self)?;
         let setup = Setup {
-            parameter: "alpha",
+            parameter: "alpha".into(),
             u,
             p,
             settings: Settings::default(),
@@ -66,9 +66,7 @@ impl Family for RingLoadCase {
     }
 
     fn second_parameter(&self, _: &ResolvedCase, key: &str) -> Result<Second, MapError> {
-        let usual = (key == map::MOMENT).then_some(map::USUAL_MOMENT * self.bending);
-        let (value, key) = map::value(self, key)?;
-        Ok(Second { key, value, usual, limits: None })
+        map::second(self, key)
     }
 
     fn attempt(

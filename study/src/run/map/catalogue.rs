@@ -64,12 +64,12 @@ impl Visitor for Map<'_, '_, '_> {
     type Output = Result<(Branch, Vec<Found>, Vec<String>), Refused>;
 
     fn visit<P: Problem>(self, problem: &P, setup: Setup) -> Self::Output {
-        let known: Vec<&str> = problem.parameters().iter().map(|q| q.name).collect();
+        let known: Vec<&str> = problem.parameters().iter().map(|q| &q.name[..]).collect();
         if !known.contains(&self.task.key.as_str()) {
             let others = known.into_iter().filter(|name| *name != setup.parameter);
             return Err(Refused::Key(others.map(str::to_string).collect()));
         }
-        let tracer = Tracer::new(problem, setup.parameter, &setup.u, &setup.p, setup.settings)?;
+        let tracer = Tracer::new(problem, &setup.parameter, &setup.u, &setup.p, setup.settings)?;
         let base = tracer.watching(&setup.watches)?.run(&mut listen(self.observer));
         let (mut found, mut refused) = curves(problem, &base, self.task, self.observer);
         let stopped = base.stopped.reason == StopReason::Interrupted

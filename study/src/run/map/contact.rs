@@ -3,7 +3,7 @@
 use super::curves::curves;
 use super::{Attempt, Limits, MapError, Second, Task};
 use crate::case::keys::{FRACTION, NOT_NEGATIVE, POISSON_RATIOS, POISSON_SKALAK};
-use crate::case::{ContactCase, Law};
+use crate::case::{ContactCase, Law, Shell};
 use crate::closest::closest;
 use crate::run::contact::{no_start, problem};
 use crate::run::{Observer, listen, settings};
@@ -26,16 +26,37 @@ fn value_mut<'c>(contact: &'c mut ContactCase, key: &str) -> Option<&'c mut f64>
         "surface_tension" => &mut groups.surface_tension,
         "gas_exponent" => &mut groups.gas_exponent,
         "poisson" => &mut contact.shell.poisson,
-        "b" => match &mut contact.shell.law {
-            Law::MooneyRivlin { b } => b,
-            Law::Hooke | Law::Skalak => return None,
-        },
+        "b" => return share_mut(&mut contact.shell),
         _ => return None,
     })
 }
 
+/// The share `b`, of a law that has it.
+pub(super) fn share_mut(shell: &mut Shell) -> Option<&mut f64> {
+    match &mut shell.law {
+        Law::MooneyRivlin { b } => Some(b),
+        Law::Hooke | Law::Skalak => None,
+    }
+}
+
+/// The name of a key without its table, if that is the one in which it stands.
+pub(super) fn bare(key: &str) -> &str {
+    let table =
+        |name: &str| if matches!(name, "poisson" | "b") { "shell" } else { "dimensionless" };
+    match key.split_once('.') {
+        Some((given, name)) if given == table(name) => name,
+        _ => key,
+    }
+}
+
+/// The refusal of `b` with a law that has none.
+pub(super) fn without_share(law: Law, key: String, allowed: Vec<String>) -> MapError {
+    let problem = format!("a shell of the law {law}");
+    MapError::UnknownKey { key, problem, allowed, suggestion: None }
+}
+
 /// The size that a parameter usually has, and where it ends, for those that have an end above zero.
-fn limits(law: Law, key: &str) -> (Option<f64>, Option<Limits>) {
+pub(super) fn limits(law: Law, key: &str) -> (Option<f64>, Option<Limits>) {
     let within = |usual, low, high, allowed| (Some(usual), Some(Limits { low, high, allowed }));
     match (key, law) {
         ("gas_exponent", _) => within(1.4, 0.0, f64::INFINITY, NOT_NEGATIVE),
@@ -49,12 +70,7 @@ fn limits(law: Law, key: &str) -> (Option<f64>, Option<Limits>) {
 
 /// The second parameter that a key names.
 pub(in crate::run) fn second(contact: &ContactCase, key: &str) -> Result<Second, MapError> {
-    let table =
-        |name: &str| if matches!(name, "poisson" | "b") { "shell" } else { "dimensionless" };
-    let name = match key.split_once('.') {
-        Some((given, name)) if given == table(name) => name,
-        _ => key,
-    };
+    let name = bare(key);
     let law = contact.shell.law;
     if let Some(value) = value_mut(&mut contact.clone(), name) {
         let (usual, limits) = limits(law, name);
@@ -67,10 +83,7 @@ pub(in crate::run) fn second(contact: &ContactCase, key: &str) -> Result<Second,
     let key = key.to_string();
     Err(match name {
         "z0" => MapError::SameParameter { key, allowed },
-        "b" => {
-            let problem = format!("a shell of the law {law}");
-            MapError::UnknownKey { key, problem, allowed, suggestion: None }
-        }
+        "b" => without_share(law, key, allowed),
         _ => {
             let problem = "the contact problem".to_string();
             MapError::UnknownKey { key, problem, allowed, suggestion }

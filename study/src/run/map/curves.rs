@@ -199,7 +199,7 @@ fn plain<P: Problem>(
     let branch = &curve.branch;
     let column = |name: &str| curve.column(name).unwrap_or_default();
     let (first, second) = (column(parameter), column(key));
-    let own = problem.observables().iter().copied();
+    let own = problem.observables().iter().map(|name| &name[..]);
     let names: Vec<&str> =
         own.chain([OMEGA].into_iter().filter(|_| *kind == EventKind::Hopf)).collect();
     let columns: Vec<Vec<f64>> = names.iter().map(|name| column(name)).collect();

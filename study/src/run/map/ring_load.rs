@@ -1,37 +1,57 @@
-//! Maps of the ring-loaded shell: the contact angle and a moment at the ring, or a group.
+//! Maps of the ring-loaded shell: the contact angle and a moment at the ring, or a number of the case.
 
+use super::contact::{bare, limits, share_mut, without_share};
 use super::curves::{Found, curves};
-use super::{Attempt, MapError, Task};
+use super::{Attempt, MapError, Second, Task};
 use crate::case::{PathCase, ResolvedCase, RingLoadCase};
 use crate::closest::closest;
 use crate::run::ring_load::{Start, in_degrees, no_start, path, start, watches};
 use crate::run::{Observer, listen};
 use continuation::Tracer;
 
-pub(in crate::run) const MOMENT: &str = "moment";
+const MOMENT: &str = "moment";
 /// Range of the moment about zero, in units of the bending stiffness.
-pub(in crate::run) const USUAL_MOMENT: f64 = 0.5;
+const USUAL_MOMENT: f64 = 0.5;
 /// What can vary besides the angle.
-const KEYS: [&str; 3] = [MOMENT, "bending", "pressure"];
+const KEYS: [&str; 6] = [MOMENT, "bending", "pressure", "gas_exponent", "poisson", "b"];
 
-/// The value of a parameter in the case, and its plain name.
-pub(in crate::run) fn value(ring: &RingLoadCase, key: &str) -> Result<(f64, String), MapError> {
-    let name = key.strip_prefix("dimensionless.").unwrap_or(key);
-    let value = match name {
-        MOMENT => 0.0,
-        "bending" => ring.bending,
-        "pressure" => ring.pressure,
+/// Where the value of a key of the case is kept; `b` only with a law that has it.
+fn value_mut<'r>(ring: &'r mut RingLoadCase, key: &str) -> Option<&'r mut f64> {
+    Some(match key {
+        "bending" => &mut ring.groups.bending,
+        "pressure" => &mut ring.groups.pressure,
+        "gas_exponent" => &mut ring.groups.gas_exponent,
+        "poisson" => &mut ring.shell.poisson,
+        "b" => return share_mut(&mut ring.shell),
+        _ => return None,
+    })
+}
+
+/// The second parameter that a key names.
+pub(in crate::run) fn second(ring: &RingLoadCase, key: &str) -> Result<Second, MapError> {
+    let name = bare(key);
+    if name == MOMENT {
+        let usual = Some(USUAL_MOMENT * ring.groups.bending);
+        return Ok(Second { key: MOMENT.to_owned(), value: 0.0, usual, limits: None });
+    }
+    let law = ring.shell.law;
+    if let Some(value) = value_mut(&mut ring.clone(), name) {
+        let (usual, limits) = limits(law, name);
+        return Ok(Second { key: name.to_owned(), value: *value, usual, limits });
+    }
+    let known = |name: &&str| *name == MOMENT || value_mut(&mut ring.clone(), name).is_some();
+    let allowed: Vec<&str> = KEYS.into_iter().filter(known).collect();
+    let suggestion = closest(name, allowed.iter().copied()).map(str::to_owned);
+    let allowed = allowed.into_iter().map(str::to_owned).collect();
+    let key = key.to_owned();
+    Err(match name {
+        "alpha" => MapError::SameParameter { key, allowed },
+        "b" => without_share(law, key, allowed),
         _ => {
-            let (key, allowed) = (key.to_string(), KEYS.map(str::to_string).to_vec());
-            if name == "alpha" {
-                return Err(MapError::SameParameter { key, allowed });
-            }
-            let suggestion = closest(name, KEYS).map(str::to_string);
-            let problem = "the ring-load problem".to_string();
-            return Err(MapError::UnknownKey { key, problem, allowed, suggestion });
+            let problem = "the ring-load problem".to_owned();
+            MapError::UnknownKey { key, problem, allowed, suggestion }
         }
-    };
-    Ok((value, name.to_string()))
+    })
 }
 
 /// The base branch with the second parameter `at` a value, and its curves.
@@ -42,10 +62,8 @@ pub(in crate::run) fn attempt(
     observer: &mut Observer<'_>,
 ) -> Result<Attempt, MapError> {
     let mut ring = ring.clone();
-    match task.key.as_str() {
-        "bending" => ring.bending = at,
-        "pressure" => ring.pressure = at,
-        _ => {}
+    if let Some(value) = value_mut(&mut ring, &task.key) {
+        *value = at;
     }
     let Start { problem, u, mut p } = start(task.case, &ring)?;
     if task.key == MOMENT {
