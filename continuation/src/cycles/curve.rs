@@ -258,15 +258,15 @@ fn confirm_cusps(curve: &mut CycleCurve) {
 
 /// The extended system of a curve.
 enum Extended<'a> {
-    Fold(FoldCurve<'a>),
-    BranchPoint(BranchPointCurve<'a>),
+    Fold(Box<FoldCurve<'a>>),
+    BranchPoint(Box<BranchPointCurve<'a>>),
 }
 
 impl<'a> Extended<'a> {
     fn problem<'p>(&'p self) -> &'p DynProblem<'p> {
         match self {
-            Extended::Fold(curve) => curve,
-            Extended::BranchPoint(curve) => curve,
+            Extended::Fold(curve) => &**curve,
+            Extended::BranchPoint(curve) => &**curve,
         }
     }
 
@@ -387,11 +387,13 @@ impl Run<'_, '_> {
         let parameters = (self.parameters[0], self.parameters[1]);
         Ok(match self.kind {
             SpecialCycles::LimitPoints => {
-                Extended::Fold(FoldCurve::of_cycles(equations, parameters, at, scales)?)
+                let curve = FoldCurve::of_cycles(equations, parameters, at, scales)?;
+                Extended::Fold(Box::new(curve))
             }
-            SpecialCycles::Doublings => Extended::BranchPoint(BranchPointCurve::of_cycles(
-                equations, parameters, at, scales,
-            )?),
+            SpecialCycles::Doublings => {
+                let curve = BranchPointCurve::of_cycles(equations, parameters, at, scales)?;
+                Extended::BranchPoint(Box::new(curve))
+            }
         })
     }
 
