@@ -69,8 +69,9 @@ impl Local {
     /// Largest coefficient of `w`, a bound for `w` in the element.
     #[inline(always)]
     pub fn w_bound(&self) -> f64 {
+        // one after the other: as pairs they become an instruction that older valgrinds do not know
         let max = |a: f64, b: f64| if a > b { a } else { b };
-        self.w_base + max(max(self.w[0], self.w[2]), max(self.w[3], 0.0))
+        self.w_base + max(self.w[3], max(self.w[2], max(self.w[0], 0.0)))
     }
 
     /// `w` where the functions have these values.
