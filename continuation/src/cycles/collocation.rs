@@ -286,7 +286,8 @@ impl<'a> CycleProblem<'a> {
         Orbit { n: self.n, mesh: &self.mesh, values: &x[..end], basis: &self.basis }
     }
 
-    /// The Floquet multipliers of the solution, the largest first; the error of none is known yet.
+    /// The Floquet multipliers of the solution, the largest first; the error of none is known yet. The iteration
+    /// begins where the latest one ended: their rounding depends on that.
     ///
     /// # Errors
     /// Where the problem has no value, or an interval is too long for its solution.
