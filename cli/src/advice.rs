@@ -10,7 +10,7 @@ const NAMES: &str = "; give the path of a case file, or a name from \"arclen lis
 const ANOTHER: &str = "; give another --out, or --restart to begin anew";
 
 /// An error in the words of the command line.
-pub(crate) trait Advised {
+pub trait Advised {
     /// What happened, and what to do.
     fn advised(&self) -> String;
 }

@@ -3,7 +3,7 @@
 //! `arguments` says what may be asked, `commands` does it with the libraries `study`, `pictures` and
 //! `paper`; `advice` says what to do about their errors, `terminal` is the only place that prints.
 
-mod advice;
+pub mod advice;
 mod arguments;
 mod commands;
 mod exit;

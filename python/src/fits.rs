@@ -2,6 +2,7 @@
 
 use crate::attended::attended;
 use crate::studies::{RawCase, given, json};
+use cli::advice::Advised;
 use identify::data::Direction;
 use identify::{Attended, LawName, Progress};
 use numpy::PyArray1;
@@ -155,10 +156,9 @@ pub(crate) fn fit_curve<'py>(
     let failure = waiting.failure();
     match found {
         Ok(outcome) => Ok((Some(record(py, &outcome)?), None, failure)),
-        Err(error) if error.fault() == Fault::Input => {
-            Err(PyValueError::new_err(error.to_string()))
-        }
-        Err(error) => Ok((None, Some(error.to_string()), failure)),
+        // options become arguments in the package's own words
+        Err(error) if error.fault() == Fault::Input => Err(PyValueError::new_err(error.advised())),
+        Err(error) => Ok((None, Some(error.advised()), failure)),
     }
 }
 
@@ -209,7 +209,6 @@ pub(crate) fn plan_measurement(
     let lab = laboratory(known.as_ref(), keys)?;
     let case = case.case.clone();
     let work = move || planned(&case, &lab, asked.wishes());
-    let plan =
-        attended(py, work, Some)?.map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let plan = attended(py, work, Some)?.map_err(|error| PyValueError::new_err(error.advised()))?;
     Ok((json(plan.json())?, plan.summary()))
 }
