@@ -137,7 +137,7 @@ pub(crate) fn fit_curve<'py>(
         },
     };
     let profiles =
-        fit::profiles(profile).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        fit::profiles(profile).map_err(|error| PyValueError::new_err(error.advised()))?;
     let source = fit::Source { path: curve.0, number: curve.1 };
     let waiting =
         Arc::new(Waiting { progress, stop: AtomicBool::new(false), failure: Mutex::new(None) });
