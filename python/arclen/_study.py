@@ -403,7 +403,7 @@ class Map:
     ----------
     curves : list of Curve
     points : list of dict
-        Special points on them: ``kind``, both parameters by name, ``error_estimate``.
+        Special points on them: ``kind``, both parameters by name, ``error_estimate`` (None of cusps of cycles).
     record : dict
         What the program writes to ``map.json``.
     """

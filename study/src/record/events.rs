@@ -81,7 +81,8 @@ impl Serialize for ResolutionOf<'_> {
         if let Some(error) = &self.0.mesh_error {
             map.serialize_entry("force_mesh_error", &error.force)?;
             map.serialize_entry("force_mesh_error_at", &error.at)?;
-            entry(&mut map, "special_points_mesh_error", error.special_points)?;
+            map.serialize_entry("force_mesh_error_points", &error.samples)?;
+            entry(&mut map, "z0_mesh_error", error.z0)?;
         }
         map.end()
     }

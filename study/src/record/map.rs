@@ -77,8 +77,8 @@ pub struct MapPoint {
     pub unstable_after: Option<usize>,
     /// Largest component of the residual.
     pub residual: f64,
-    /// Estimated error of the location.
-    pub error_estimate: f64,
+    /// Estimated error of the location, where it is known: of a cusp of cycles it is not.
+    pub error_estimate: Option<f64>,
 }
 
 impl MapPoint {
@@ -212,7 +212,8 @@ pub fn map_summary(result: &MapResult, folder: Option<&Path>) -> String {
             ["special point", &result.parameter, &result.key, "error"].map(str::to_string).to_vec(),
         ];
         rows.extend(result.points.iter().map(|point| {
-            let error = format!("{:.0e}", point.error_estimate);
+            let error = point.error_estimate;
+            let error = error.map_or_else(|| "–".to_string(), |error| format!("{error:.0e}"));
             vec![point.kind.clone(), rounded(point.first), rounded(point.second), error]
         }));
         out.push_str(&aligned(&rows));

@@ -382,7 +382,9 @@ pub struct MeshErrorRecord {
     /// Where that is, in `z0`.
     pub at: f64,
     /// Of the plate distance of folds and zeros of the force, the worst.
-    pub special_points: Option<f64>,
+    pub z0: Option<f64>,
+    /// How many points were looked at for the force.
+    pub samples: usize,
 }
 
 /// The same at a special point: of its plate distance and of the force there, each where it is known.
@@ -436,10 +438,14 @@ impl ResolutionRecord {
 impl MeshErrorRecord {
     /// What people see.
     fn text(&self) -> String {
-        let places = self.special_points;
-        let places =
-            places.map_or_else(String::new, |x| format!(", special points by {x:.0e} in z0"));
-        format!("mesh: halving the elements moves the force by {:.0e}{places}\n", self.force)
+        let MeshErrorRecord { force, samples, .. } = self;
+        let places = self.z0.map_or_else(String::new, |x| {
+            format!(", folds and zeros of the force by at most {x:.0e} in z0")
+        });
+        format!(
+            "mesh: halving the elements moves the force by at most {force:.0e} at {samples} \
+             points{places}\n"
+        )
     }
 }
 

@@ -41,10 +41,12 @@ impl MeshErrors {
             (span(traced, |i| force(traced, i)), span(traced, |i| branch.points[i].p));
         let samples = ordinary.iter().skip(every / 2).step_by(every);
         let mut worst: Option<(f64, usize)> = None;
+        let mut looked_at = 0;
         for &index in samples {
             let Some(shift) = look(index, None) else { continue };
             // on a steep part the height at a given force is what is off
             let error = least(shift, forces / heights);
+            looked_at += usize::from(error.is_finite());
             if error.is_finite() && worst.is_none_or(|(most, _)| error > most) {
                 worst = Some((error, index));
             }
@@ -53,7 +55,8 @@ impl MeshErrors {
         let record = worst.map(|(force, index)| MeshErrorRecord {
             force,
             at: branch.points[index].p,
-            special_points: places.max_by(f64::total_cmp),
+            z0: places.max_by(f64::total_cmp),
+            samples: looked_at,
         });
         MeshErrors { events, record }
     }

@@ -230,7 +230,7 @@ fn plain<P: Problem>(
             unstable_before: event.unstable_before,
             unstable_after: event.unstable_after,
             residual: event.residual,
-            error_estimate: event.error_estimate,
+            error_estimate: Some(event.error_estimate),
         }
     });
     Found {

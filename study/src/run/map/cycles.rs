@@ -170,7 +170,8 @@ fn plain(kind: &str, curve: &CycleCurve, bounds: [f64; 2]) -> Found {
         unstable_before: None,
         unstable_after: None,
         residual: event.residual,
-        error_estimate: event.error_estimate,
+        // that of the event leaves the collocation out
+        error_estimate: None,
     };
     let (first, second): (Vec<f64>, Vec<f64>) = places.iter().map(|[p, q]| (*p, *q)).unzip();
     Found {
