@@ -6,7 +6,8 @@
 //! at the fourth order in `z0` and force, so that all further halvings together change 1/15 of it.
 //!
 //! At a fold the plate's height is stationary along the branch: its change in the plane is that of the fold, to
-//! first order. So is the force at its extrema, where the plate distance is more sensitive: nothing is said of that.
+//! first order. So is the force at its extrema. Where along the branch either lies is more sensitive, and with it the force
+//! at a fold and the plate distance at an extremum: nothing is said of these.
 
 use crate::contact::{ContactProblem, parameter};
 use crate::meridian::Mesh;
@@ -26,7 +27,7 @@ const FORCE: usize = 0;
 pub struct Shift {
     /// Of the plate distance: of a fold, of a zero of the force; elsewhere at the same force.
     pub z0: Option<f64>,
-    /// Of the force: of a fold, of an extremum of the force; elsewhere at the same plate distance.
+    /// Of the force: of an extremum of the force; elsewhere at the same plate distance.
     pub force: Option<f64>,
 }
 
@@ -107,7 +108,7 @@ impl<'a> Refined<'a> {
         Ok(Some(match place {
             Place::Ordinary => Shift { z0: at_same_force, force: at_same_height },
             Place::Zero => Shift { z0: at_same_force, force: None },
-            Place::Fold => Shift { z0: rest(found.z0), force: rest(found.force) },
+            Place::Fold => Shift { z0: rest(found.z0), force: None },
             Place::Extremum => Shift { z0: None, force: rest(found.force) },
         }))
     }
