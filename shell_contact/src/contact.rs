@@ -8,7 +8,7 @@ use crate::density::Coefficients;
 use crate::energy::{self, gradients};
 use crate::film::{Film, Potential};
 use crate::gas::Gas;
-use crate::membrane::{Constant, Membrane};
+use crate::membrane::Constant;
 use crate::meridian::Mesh;
 use crate::observables::{self, Observation};
 use crate::params::{Dimensionless, Law, ParameterError, Shell};
@@ -75,28 +75,6 @@ pub(crate) fn gas_and_material(law: Law) -> impl Iterator<Item = Parameter> {
 pub(crate) fn gas_and_material_of(exponent: f64, shell: &Shell) -> impl Iterator<Item = f64> {
     [exponent, shell.poisson].into_iter().chain(shell.law.b())
 }
-
-/// Runs `$body` with `$law` bound to the membrane law of a [`Shell`] as its own type.
-macro_rules! with_law {
-    ($shell:expr, |$law:ident| $body:expr) => {{
-        let shell: $crate::params::Shell = $shell;
-        match shell.law {
-            $crate::params::Law::Hooke => {
-                let $law = $crate::membrane::Hooke { poisson: shell.poisson };
-                $body
-            }
-            $crate::params::Law::MooneyRivlin { b } => {
-                let $law = $crate::membrane::MooneyRivlin { b };
-                $body
-            }
-            $crate::params::Law::Skalak => {
-                let $law = $crate::membrane::Skalak { poisson: shell.poisson };
-                $body
-            }
-        }
-    }};
-}
-pub(crate) use with_law;
 
 /// Beyond it the bending energy has no lower bound, nor has a membrane's. Exponents and `b` have no such
 /// limit: differences in them may step over the ends of what a case may say.
@@ -232,9 +210,9 @@ impl ContactProblem {
     }
 
     /// Hessian, and gradient unless `r` is empty.
-    fn linearise_as<L: Membrane>(
+    fn linearise_as(
         &self,
-        law: &L,
+        law: &Shell,
         u: &[f64],
         (c, gas): (&Coefficients, &Gas),
         r: &mut [f64],
@@ -251,9 +229,9 @@ impl ContactProblem {
         energy::add_linearisation(&self.mesh, u, law, &self.potential, c, excess, r, j)
     }
 
-    fn residual_as<L: Membrane>(
+    fn residual_as(
         &self,
-        law: &L,
+        law: &Shell,
         u: &[f64],
         (c, gas): (&Coefficients, &Gas),
         r: &mut [f64],
@@ -285,7 +263,7 @@ impl Problem for ContactProblem {
 
     fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
         let (c, gas) = self.coefficients(u, p)?;
-        with_law!(c.material(self.shell.law), |law| self.residual_as(&law, u, (&c, &gas), r))
+        self.residual_as(&c.material(self.shell.law), u, (&c, &gas), r)
     }
 
     fn jacobian(&self, u: &[f64], p: &[f64], j: &mut SymmetricBand) -> Result<(), EvalError> {
@@ -300,7 +278,7 @@ impl Problem for ContactProblem {
         j: &mut SymmetricBand,
     ) -> Result<(), EvalError> {
         let (c, gas) = self.coefficients(u, p)?;
-        with_law!(c.material(self.shell.law), |law| self.linearise_as(&law, u, (&c, &gas), r, j))
+        self.linearise_as(&c.material(self.shell.law), u, (&c, &gas), r, j)
     }
 
     fn parameter_derivative(
@@ -330,10 +308,9 @@ impl Problem for ContactProblem {
             return plate::add_gradient_by(mesh, film, u, &c, variable, out);
         }
         if let Some(constant) = constant(which) {
-            return with_law!(c.material(self.shell.law), |law| {
-                let gradient = gradients::Material { law: &law, constant, c: &c };
-                energy::add_gradient(mesh, u, film.wall(&c), out, &gradient)
-            });
+            let law = &c.material(self.shell.law);
+            let gradient = gradients::Material { law, constant, c: &c };
+            return energy::add_gradient(mesh, u, film.wall(&c), out, &gradient);
         }
         match which {
             parameter::BENDING => {

@@ -4,7 +4,7 @@
 //! over `2π`), in `χR0²` and `R0³`; the force is that on one plate, in `√(χk_b)`, positive in
 //! compression.
 
-use crate::contact::{ContactProblem, with_law};
+use crate::contact::ContactProblem;
 use crate::density::Coefficients;
 use crate::energy;
 use crate::film::Potential;
@@ -85,13 +85,8 @@ pub(crate) fn observe(
 ) -> Result<Observation, EvalError> {
     let (c, gas) = problem.coefficients(u, p)?;
     let mesh = &problem.mesh;
-    let parts = with_law!(c.material(problem.shell.law), |law| energy::parts(
-        mesh,
-        u,
-        &law,
-        &problem.potential,
-        &c
-    ))?;
+    let law = c.material(problem.shell.law);
+    let parts = energy::parts(mesh, u, &law, &problem.potential, &c)?;
     let whole = 4.0 * PI;
     let energies = [
         parts.stretching,
@@ -214,7 +209,8 @@ impl ContactProblem {
     pub fn profile(&self, u: &[f64], p: &[f64], samples: usize) -> Result<Profile, EvalError> {
         let (c, _) = self.coefficients(u, p)?;
         energy::admissible(&self.mesh, u, self.potential.wall(&c))?;
-        let tensions = |s, phi| with_law!(c.material(self.shell.law), |law| tensions(&law, s, phi));
+        let law = c.material(self.shell.law);
+        let tensions = |s, phi| tensions(&law, s, phi);
         Ok(Profile::of(&self.mesh, &self.potential, u, &c, samples, tensions))
     }
 }

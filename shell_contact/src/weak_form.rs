@@ -7,7 +7,7 @@
 //! discretisation, not to rounding. Test functions that do not touch pole or equator are used, so
 //! the boundary terms vanish.
 
-use crate::contact::{ContactProblem, with_law};
+use crate::contact::ContactProblem;
 use crate::energy;
 use crate::film::Potential;
 use crate::membrane::tensions;
@@ -63,8 +63,7 @@ pub fn balances(problem: &ContactProblem, u: &[f64], p: &[f64]) -> Result<Vec<Ba
             let ms = c.bending / stretch_phi * (bend_s + c.poisson * bend_phi);
             let mphi = c.bending / stretch_s * (bend_phi + c.poisson * bend_s);
             let material = c.material(problem.shell.law);
-            let (tau_s, tau_phi) =
-                with_law!(material, |law| tensions(&law, stretch_s, stretch_phi));
+            let (tau_s, tau_phi) = tensions(&material, stretch_s, stretch_phi);
             let film = problem.potential.jet(c.plate - z, c.adhesion, c.film);
             // attraction positive, as Eq. (16) has it
             let disjoining = film.d1 * s1 / a;

@@ -1,7 +1,7 @@
 //! The contact problem as the plate sees it: energy, pull and stiffness.
 
 use super::{Device, Loading};
-use crate::contact::{ContactProblem, parameter, variable, with_law};
+use crate::contact::{ContactProblem, parameter, variable};
 use crate::energy;
 use crate::film::Potential;
 use crate::plate;
@@ -17,8 +17,7 @@ impl ContactProblem {
     pub fn total_energy(&self, u: &[f64], p: &[f64]) -> Result<f64, EvalError> {
         let (c, gas) = self.coefficients(u, p)?;
         let (mesh, film) = (&self.mesh, &self.potential);
-        let parts =
-            with_law!(c.material(self.shell.law), |law| energy::parts(mesh, u, &law, film, &c))?;
+        let parts = energy::parts(mesh, u, &c.material(self.shell.law), film, &c)?;
         let elastic = parts.stretching + parts.bending + parts.film;
         Ok(4.0 * PI * (elastic + gas.energy(parts.volume) + c.surface_tension * parts.area))
     }

@@ -12,6 +12,7 @@ pub use hooke::Hooke;
 pub use mooney_rivlin::MooneyRivlin;
 pub use skalak::Skalak;
 
+use crate::params::{Law, Shell};
 use crate::scalar::Scalar;
 
 /// Value and derivatives of a membrane energy in `(q, m)`.
@@ -51,6 +52,50 @@ pub trait Membrane: Copy {
     fn shear<T: Scalar>(&self, q: T, m: T) -> T;
     /// Derivatives of `(∂w/∂q, ∂w/∂m)` by a constant; zero where the law does not have it.
     fn slopes_by<T: Scalar>(&self, constant: Constant, q: T, m: T) -> (T, T);
+}
+
+/// Runs `$body` with `$law` bound to the law of a [`Shell`] as its own type.
+macro_rules! with_law {
+    ($shell:expr, |$law:ident| $body:expr) => {
+        match $shell.law {
+            Law::Hooke => {
+                let $law = Hooke { poisson: $shell.poisson };
+                $body
+            }
+            Law::MooneyRivlin { b } => {
+                let $law = MooneyRivlin { b };
+                $body
+            }
+            Law::Skalak => {
+                let $law = Skalak { poisson: $shell.poisson };
+                $body
+            }
+        }
+    };
+}
+
+/// The law that a shell has, chosen at every evaluation: loops over it are compiled once, as those over a
+/// [`Film`](crate::film::Film) are.
+impl Membrane for Shell {
+    #[inline(always)]
+    fn energy<T: Scalar>(&self, q: T, m: T) -> T {
+        with_law!(self, |law| law.energy(q, m))
+    }
+
+    #[inline(always)]
+    fn jet<T: Scalar>(&self, q: T, m: T) -> MembraneJet<T> {
+        with_law!(self, |law| law.jet(q, m))
+    }
+
+    #[inline(always)]
+    fn shear<T: Scalar>(&self, q: T, m: T) -> T {
+        with_law!(self, |law| law.shear(q, m))
+    }
+
+    #[inline(always)]
+    fn slopes_by<T: Scalar>(&self, constant: Constant, q: T, m: T) -> (T, T) {
+        with_law!(self, |law| law.slopes_by(constant, q, m))
+    }
 }
 
 /// Tensions `(τ_ss, τ_φφ)` per deformed length, Eq. (8), from the stretches
@@ -130,6 +175,9 @@ mod tests {
         certify(MooneyRivlin { b: 0.3 });
         certify(Skalak { poisson: 0.0 });
         certify(Skalak { poisson: 0.6 });
+        for law in [Law::Hooke, Law::MooneyRivlin { b: 0.3 }, Law::Skalak] {
+            certify(Shell { law, poisson: 0.4 });
+        }
     }
 
     /// The laws once more from their equations, with constants that are dual numbers too.

@@ -3,7 +3,7 @@
 
 use super::ends::{Ends, Neutral};
 use super::{AsymmetricModes, Parity, elements};
-use crate::contact::{ContactProblem, with_law};
+use crate::contact::ContactProblem;
 use crate::dual::close;
 use crate::film::{Film, Potential, check};
 use crate::gas::Gas;
@@ -129,7 +129,7 @@ fn surface(
                 let k11 = i11 * b11 + i12 * b12 - 1.0;
                 let k22 = i12 * b12 + i22 * b22 - 1.0;
                 let k12 = 0.5 * (i11 * b12 + i12 * b22 + i12 * b11 + i22 * b12);
-                let membrane = with_law!(problem.shell, |law| law.energy(q, m));
+                let membrane = problem.shell.energy(q, m);
                 let bending = 0.5
                     * kb
                     * (k11 * k11 + 2.0 * nu * k11 * k22 + k22 * k22 + 2.0 * (1.0 - nu) * k12 * k12);

@@ -59,7 +59,7 @@ pub use along::{ScanSettings, Scanned, SymmetryBreaking, scan_branch, scan_whole
 pub use eigen::{Mode, ModeShape};
 pub use whole::{WholeModes, WholeScan, WholeShell};
 
-use crate::contact::{ContactProblem, with_law};
+use crate::contact::ContactProblem;
 use crate::density::Coefficients;
 use crate::energy;
 use crate::film::Potential;
@@ -223,8 +223,7 @@ impl<'a> AsymmetricModes<'a> {
         let (c, gas) = problem.coefficients(u, p)?;
         let excess = gas.excess(energy::volume(self.mesh, u)?);
         let film = &problem.potential;
-        with_law!(c.material(problem.shell.law), |law| self
-            .assemble_with(&law, film, &c, excess, u))
+        self.assemble_with(&c.material(problem.shell.law), film, &c, excess, u)
     }
 
     /// Takes the state `u` under the excess pressure `P_G − P_A`.

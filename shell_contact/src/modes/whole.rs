@@ -9,7 +9,6 @@
 use super::elements::{self, AT_POLE, Column, Element, Masses, ROWS};
 use super::ends::{Ends, FIELDS, HALF_BANDWIDTH, Neutral, Slot};
 use super::{Extent, ModeCount, Parity, bound, count_negative};
-use crate::contact::with_law;
 use crate::density::Coefficients;
 use crate::device::Loading;
 use crate::film::Potential;
@@ -145,10 +144,9 @@ impl<'a> WholeModes<'a> {
         self.inside.iter_mut().for_each(|columns| columns.fill([0.0; ROWS]));
         self.bound = 0.0;
         let (above, below) = &problem.potentials;
-        with_law!(c[0].material(problem.shell.law), |law| {
-            self.add(problem, Side::Top, &law, above, &c[0], excess, u)?;
-            self.add(problem, Side::Bottom, &law, below, &c[1], excess, u)
-        })
+        let law = &c[0].material(problem.shell.law);
+        self.add(problem, Side::Top, law, above, &c[0], excess, u)?;
+        self.add(problem, Side::Bottom, law, below, &c[1], excess, u)
     }
 
     /// Adds one half.

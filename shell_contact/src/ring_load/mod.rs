@@ -21,12 +21,12 @@ mod observe;
 pub use mesh::DEFAULT_GRADING;
 pub use observe::{NAMES, RingObservation, RingProfile};
 
-use crate::contact::{POISSON_RATIO, gas_and_material, gas_and_material_of, with_law};
+use crate::contact::{POISSON_RATIO, gas_and_material, gas_and_material_of};
 use crate::density::Coefficients;
 use crate::energy::{self, gradients};
 use crate::film::NoFilm;
 use crate::gas::Gas;
-use crate::membrane::{Constant, Membrane};
+use crate::membrane::Constant;
 use crate::meridian::Mesh;
 use crate::params::{ParameterError, Shell};
 use crate::spline::HALF_BANDWIDTH;
@@ -207,9 +207,9 @@ impl RingLoadProblem {
     }
 
     /// The matrix, and the gradient unless `r` is empty.
-    fn assemble<L: Membrane>(
+    fn assemble(
         &self,
-        law: &L,
+        law: &Shell,
         (u, values): (&[f64], &Values),
         r: &mut [f64],
         j: &mut Arrow<SymmetricBand>,
@@ -240,9 +240,9 @@ impl RingLoadProblem {
         Ok(())
     }
 
-    fn residual_as<L: Membrane>(
+    fn residual_as(
         &self,
-        law: &L,
+        law: &Shell,
         u: &[f64],
         values: &Values,
         r: &mut [f64],
@@ -293,7 +293,7 @@ impl Problem for RingLoadProblem {
 
     fn residual(&self, u: &[f64], p: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
         let values = self.values(u, p)?;
-        with_law!(self.material(&values), |law| self.residual_as(&law, u, &values, r))
+        self.residual_as(&self.material(&values), u, &values, r)
     }
 
     fn jacobian(
@@ -313,9 +313,7 @@ impl Problem for RingLoadProblem {
         j: &mut Arrow<SymmetricBand>,
     ) -> Result<(), EvalError> {
         let values = self.values(u, p)?;
-        with_law!(self.material(&values), |law| {
-            self.assemble(&law, (u, &values), r, j, Row::Level)
-        })
+        self.assemble(&self.material(&values), (u, &values), r, j, Row::Level)
     }
 
     fn parameter_derivative(
@@ -335,9 +333,8 @@ impl Problem for RingLoadProblem {
         let (shell, _) = out.split_at_mut(self.coefficients);
         match which {
             parameter::ALPHA => {
-                with_law!(c.material(self.shell.law), |law| {
-                    moving.angle_derivative(&law, x, &c, &gas, shell)
-                });
+                let law = &c.material(self.shell.law);
+                moving.angle_derivative(law, x, &c, &gas, shell);
                 let mut slope = -alpha.cos();
                 for at in &ring {
                     let force = c.bending * q[0];
@@ -373,10 +370,9 @@ impl Problem for RingLoadProblem {
                     parameter::B => Constant::MooneyB,
                     _ => Constant::Poisson,
                 };
-                with_law!(c.material(self.shell.law), |law| {
-                    let gradient = gradients::Material { law: &law, constant, c: &c };
-                    energy::add_gradient(mesh, x, c.plate, shell, &gradient)
-                })?;
+                let law = &c.material(self.shell.law);
+                let gradient = gradients::Material { law, constant, c: &c };
+                energy::add_gradient(mesh, x, c.plate, shell, &gradient)?;
             }
             _ => {}
         }
@@ -401,9 +397,7 @@ impl Problem for RingLoadProblem {
         h: &mut Arrow<SymmetricBand>,
     ) -> Result<(), EvalError> {
         let values = self.values(u, p)?;
-        with_law!(self.material(&values), |law| {
-            self.assemble(&law, (u, &values), &mut [], h, Row::Height)
-        })
+        self.assemble(&self.material(&values), (u, &values), &mut [], h, Row::Height)
     }
 
     fn multipliers(&self) -> usize {

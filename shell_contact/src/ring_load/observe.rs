@@ -1,7 +1,6 @@
 //! What is reported of a ring-loaded shell.
 
 use super::{RingLoadProblem, Values};
-use crate::contact::with_law;
 use crate::energy;
 use crate::film::NoFilm;
 use crate::meridian::Mesh;
@@ -88,9 +87,7 @@ impl RingLoadProblem {
         let h = thickness(c.bending, c.poisson);
         let (x, q) = u.split_at(u.len().saturating_sub(1));
         self.with_mesh(alpha, |mesh, _, outside| {
-            let parts = with_law!(c.material(self.shell.law), |law| {
-                energy::parts(mesh, x, &law, &NoFilm, &c)
-            })?;
+            let parts = energy::parts(mesh, x, &c.material(self.shell.law), &NoFilm, &c)?;
             let ring = alpha.cos() + mesh.displacement_in(x, outside, alpha)[0].1;
             let pole = 1.0 + mesh.displacement_in(x, 0, 0.0)[0].1;
             let highest = highest(mesh, x);

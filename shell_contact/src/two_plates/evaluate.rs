@@ -6,12 +6,13 @@
 //! stiff, `γP_G/V̂`.
 
 use super::{Half, Side, TwoPlatesProblem, parameter};
-use crate::contact::{POISSON_RATIO, with_law};
+use crate::contact::POISSON_RATIO;
 use crate::density::{Coefficients, Parts};
 use crate::energy::{self, gradients};
 use crate::film::{Potential, Wall};
 use crate::gas::Gas;
-use crate::membrane::{Constant, Membrane};
+use crate::membrane::Constant;
+use crate::params::Shell;
 use crate::plate::{self, Variable};
 use continuation::linalg::SymmetricBand;
 use continuation::{EvalError, Matrix, ParamId};
@@ -115,13 +116,13 @@ impl TwoPlatesProblem {
     ) -> Result<(), EvalError> {
         let excess = gas.excess(0.5 * self.volume_gradient(u, r)?);
         r.iter_mut().for_each(|r| *r *= -excess);
-        with_law!(c[0].material(self.shell.law), |law| self.add_gradients(&law, u, c, r))?;
+        self.add_gradients(&c[0].material(self.shell.law), u, c, r)?;
         self.check_poles(u)
     }
 
-    fn add_gradients<L: Membrane>(
+    fn add_gradients(
         &self,
-        law: &L,
+        law: &Shell,
         u: &[f64],
         [above, below]: &[Coefficients; 2],
         r: &mut [f64],
@@ -149,10 +150,9 @@ impl TwoPlatesProblem {
         let excess = gas.excess(half_volume);
         r.iter_mut().zip(v).for_each(|(r, v)| *r = -excess * *v);
         let ([top, bottom], (upper, lower)) = (self.halves(), &self.potentials);
-        with_law!(c[0].material(self.shell.law), |law| {
-            energy::add_linearisation(&top, u, &law, upper, &c[0], excess, r, j)?;
-            energy::add_linearisation(&bottom, u, &law, lower, &c[1], excess, r, j)?;
-        });
+        let law = &c[0].material(self.shell.law);
+        energy::add_linearisation(&top, u, law, upper, &c[0], excess, r, j)?;
+        energy::add_linearisation(&bottom, u, law, lower, &c[1], excess, r, j)?;
         self.check_poles(u)
     }
 
@@ -214,10 +214,8 @@ impl TwoPlatesProblem {
         constant: Constant,
         out: &mut [f64],
     ) -> Result<(), EvalError> {
-        with_law!(c.material(self.shell.law), |law| {
-            let gradient = gradients::Material { law: &law, constant, c };
-            energy::add_gradient(half, u, wall, out, &gradient)
-        })
+        let gradient = gradients::Material { law: &c.material(self.shell.law), constant, c };
+        energy::add_gradient(half, u, wall, out, &gradient)
     }
 
     /// `∂E/∂z_p` of the upper plate and of the lower, each away from the equator.
@@ -240,10 +238,9 @@ impl TwoPlatesProblem {
     pub(super) fn parts(&self, u: &[f64], c: &[Coefficients; 2]) -> Result<Parts<f64>, EvalError> {
         let ([top, bottom], (upper, lower)) = (self.halves(), &self.potentials);
         let volume = self.volume(u)?;
-        let (a, b) = with_law!(c[0].material(self.shell.law), |law| (
-            energy::half_parts(&top, u, &law, upper, &c[0])?,
-            energy::half_parts(&bottom, u, &law, lower, &c[1])?,
-        ));
+        let law = &c[0].material(self.shell.law);
+        let a = energy::half_parts(&top, u, law, upper, &c[0])?;
+        let b = energy::half_parts(&bottom, u, law, lower, &c[1])?;
         self.check_poles(u)?;
         Ok(Parts {
             stretching: a.stretching + b.stretching,

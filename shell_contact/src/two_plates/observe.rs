@@ -1,7 +1,6 @@
 //! What is reported of a state between two plates.
 
 use super::{Half, Side, TwoPlatesProblem, parameter};
-use crate::contact::with_law;
 use crate::density::Coefficients;
 use crate::energy;
 use crate::gas::Gas;
@@ -201,8 +200,8 @@ impl TwoPlatesProblem {
         energy::is_clear(&top, u, wall_above)?;
         energy::is_clear(&bottom, u, wall_below)?;
         self.check_poles(u)?;
-        let tensions =
-            |s, phi| with_law!(c[0].material(self.shell.law), |law| tensions(&law, s, phi));
+        let law = c[0].material(self.shell.law);
+        let tensions = |s, phi| tensions(&law, s, phi);
         let mut out = Profile::of(&top, &self.potentials.0, u, &c[0], samples, tensions);
         let below = Profile::of(&bottom, &self.potentials.1, u, &c[1], samples, tensions);
         // the equator is there already
