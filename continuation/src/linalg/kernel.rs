@@ -30,6 +30,27 @@ impl Arithmetic for Fused {
     }
 }
 
+/// One step of `L D Lᵀ` on a lower band by columns: subtracts what `column`, with its diagonal first, contributes to the
+/// `K = W − 1` columns that follow. Its part of `L`, 1 in front.
+#[inline(always)]
+pub fn eliminate<A: Arithmetic, const K: usize, const W: usize>(
+    column: &[f64; W],
+    inverse_pivot: f64,
+    next: &mut [[f64; W]; K],
+) -> [f64; W] {
+    let mut l = [1.0; W];
+    for i in 1..W {
+        l[i] = column[i] * inverse_pivot;
+    }
+    for k in 1..W {
+        let t = column[k];
+        for i in 0..W - k {
+            next[k - 1][i] = A::mul_add(-t, l[k + i], next[k - 1][i]);
+        }
+    }
+    l
+}
+
 /// A loop for [`run`].
 pub trait Kernel {
     /// Its result.

@@ -82,16 +82,7 @@ impl<const K: usize, const W: usize> Kernel for Factor<'_, K, W> {
             negative += usize::from(d < 0.0);
             column[0] = d;
             let inverse = 1.0 / d;
-            let mut l = [1.0; W];
-            for i in 1..W {
-                l[i] = column[i] * inverse;
-            }
-            for k in 1..W {
-                let t = column[k];
-                for i in 0..W - k {
-                    next[k - 1][i] = A::mul_add(-t, l[k + i], next[k - 1][i]);
-                }
-            }
+            let l = kernel::eliminate::<A, K, W>(column, inverse, next);
             for i in 0..W {
                 let term = (column[i] * l[i]).abs();
                 largest[i] = if term > largest[i] { term } else { largest[i] };

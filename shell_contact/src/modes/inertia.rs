@@ -121,16 +121,7 @@ impl Kernel for Columns<'_> {
             let size = d.abs() * scale[0];
             smallest = if size > smallest { smallest } else { size };
             let inverse = 1.0 / d;
-            let mut l = [1.0; ROWS];
-            for i in 1..ROWS {
-                l[i] = column[i] * inverse;
-            }
-            for k in 1..ROWS {
-                let t = column[k];
-                for i in 0..ROWS - k {
-                    next[k - 1][i] = A::mul_add(-t, l[k + i], next[k - 1][i]);
-                }
-            }
+            let l = kernel::eliminate::<A, { ROWS - 1 }, ROWS>(column, inverse, next);
             for i in 0..ROWS {
                 let term = (column[i] * l[i]).abs() * scale[i];
                 largest[i] = if term > largest[i] { term } else { largest[i] };

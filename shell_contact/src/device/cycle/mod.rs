@@ -1,13 +1,14 @@
 //! Once to and fro in a device's parameter: the stable state is followed, and where it ends the
 //! dissipative motion leads to another.
 
-use super::flow::{Motion, MotionError, Relaxation, RelaxationSettings, Side};
+mod jump;
+
+use super::flow::{MotionError, Relaxation, RelaxationSettings};
 use super::start::{device_settings, device_watches};
 use super::walker::dot;
 use super::{Device, Loading};
 use continuation::{
-    Detail, EvalError, Event, EventKind, NewtonSettings, Point, Progress, Settings, Stop,
-    StopReason, TraceError, Tracer, newton,
+    Detail, Event, EventKind, Point, Progress, Settings, Stop, StopReason, TraceError, Tracer,
 };
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -128,11 +129,6 @@ const FAR: f64 = 5.0;
 /// States nearer than this, in `R0`, are the same.
 const SAME: f64 = 1e-8;
 
-/// How far beyond a branch point states of other branches are sought: the nearer one is nearer to it
-/// by the square root of their ratio at least, unless it is a jump away.
-const BEYOND: [f64; 2] = [1e-6, 1e-8];
-/// States so near to a branch point, in `R0`, are no jump away: it is known to the root of rounding.
-const AT_POINT: f64 = 1e-6;
 /// Part of the way by which the parameter must go back to be called so.
 const TURN: f64 = 1e-9;
 
@@ -404,117 +400,6 @@ impl<'p, P: Loading> Traveller<'p, P> {
     fn cannot_go_on(&self, why: &str) -> End {
         let (name, at) = (self.problem.device().parameter_name(), self.parameter);
         End::stop(StopReason::StepTooSmall, format!("at {name} = {at:.10} {why}"))
-    }
-
-    /// At a branch point: goes on without a jump if beyond it there are stable states of another
-    /// branch, ever nearer to it, and records the first of them.
-    fn pass(&mut self, direction: Direction, target: f64) -> bool {
-        let problem = self.problem;
-        let (at, ahead) = (self.parameter, target - self.parameter);
-        let mut distances = [0.0; 2];
-        let mut beyond = Vec::new();
-        for (distance, step) in distances.iter_mut().zip(BEYOND) {
-            if ahead.abs() < step {
-                return false;
-            }
-            let Some(x) = self.stable_beyond(at + step.copysign(ahead)) else { return false };
-            let apart: Vec<f64> = x.iter().zip(&self.x).map(|(a, b)| a - b).collect();
-            let mut m = vec![0.0; apart.len()];
-            problem.metric(&apart, &mut m);
-            *distance = dot(&m, &apart).max(0.0).sqrt();
-            if beyond.is_empty() {
-                beyond = x;
-            }
-        }
-        // a tenth or less where branches meet, all of it after a jump
-        if distances[0] > AT_POINT && distances[1] > 0.5 * distances[0] {
-            return false;
-        }
-        let before = std::mem::replace(&mut self.x, beyond);
-        self.parameter = at + BEYOND[0].copysign(ahead);
-        match self.landing(direction) {
-            Ok(point) => {
-                self.cycle.points.push(CyclePoint { event: None, ..point });
-                true
-            }
-            Err(_) => {
-                (self.x, self.parameter) = (before, at);
-                false
-            }
-        }
-    }
-
-    /// The stable state where the device's parameter has another value, a little off: on the branch
-    /// that goes on, or where the motion from there leads.
-    fn stable_beyond(&mut self, parameter: f64) -> Option<Vec<f64>> {
-        let problem = self.problem;
-        let p = problem.parameters_at(parameter);
-        let mut x = self.x.clone();
-        let report = newton(problem, &mut x, &p, &NewtonSettings::default()).ok()?;
-        self.cycle.newton_iterations += report.iterations;
-        if self.relaxation.is_stable(problem, &x, &p) {
-            return Some(x);
-        }
-        let motion = self.relaxation.from_saddle(problem, &x, &p, Side::First);
-        self.cycle.newton_iterations += self.relaxation.assemblies();
-        (motion == Ok(Motion::Rest)).then(|| self.relaxation.state().to_vec())
-    }
-
-    /// Follows the dissipative motion from the state that was lost.
-    fn jump(&mut self, direction: Direction) -> Result<(), End> {
-        let problem = self.problem;
-        let p = problem.parameters_at(self.parameter);
-        let motion = self.relaxation.from_fold(problem, &self.x, &p);
-        self.cycle.newton_iterations += self.relaxation.assemblies();
-        let before = self.cycle.points.len().saturating_sub(1);
-        let mut jump = Jump {
-            direction,
-            parameter: self.parameter,
-            before: Some(before),
-            after: None,
-            dissipated: None,
-            steps: self.relaxation.steps(),
-        };
-        match motion {
-            Ok(Motion::Rest) => {
-                self.x.copy_from_slice(self.relaxation.state());
-                let landed =
-                    self.landing(direction).map_err(|e| self.refused(&MotionError::Start(e)))?;
-                jump.after = Some(self.cycle.points.len());
-                jump.dissipated = Some(self.cycle.points[before].potential - landed.potential);
-                self.cycle.points.push(landed);
-                self.cycle.jumps.push(jump);
-                Ok(())
-            }
-            Ok(Motion::Away) => {
-                self.cycle.jumps.push(jump);
-                self.away = true;
-                Ok(())
-            }
-            Err(error) => Err(self.refused(&error)),
-        }
-    }
-
-    fn refused(&self, error: &MotionError) -> End {
-        let name = self.problem.device().parameter_name();
-        let detail = format!("the jump at {name} = {:.10} was lost: {error}", self.parameter);
-        End::stop(StopReason::StepTooSmall, detail)
-    }
-
-    fn landing(&self, direction: Direction) -> Result<CyclePoint, EvalError> {
-        let problem = self.problem;
-        let p = problem.parameters_at(self.parameter);
-        let z0 = problem.plate(&self.x, &p);
-        Ok(CyclePoint {
-            direction,
-            parameter: self.parameter,
-            z0,
-            force: problem.force(&self.x, &p)?,
-            energy: problem.energy(&self.x, &p)?,
-            potential: problem.potential(&self.x, &p)?,
-            u: problem.shell_part(&self.x).to_vec(),
-            event: Some(JUMP.to_owned()),
-        })
     }
 
     fn record(&mut self, direction: Direction, point: &Point, event: Option<&Event>) {

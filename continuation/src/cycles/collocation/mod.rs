@@ -1,15 +1,17 @@
 //! The collocation equations as a [`Problem`].
 
+mod work;
+
 use super::basis::Basis;
 use super::block::sized;
 use super::cycle::{Cycle, CycleError};
-use super::floquet::{Latest, Multiplier, multipliers};
+use super::floquet::{Multiplier, multipliers};
 use super::functions::functions;
 use super::interval::{fill, interpolate, rows_of, weigh};
 use super::matrix::CycleMatrix;
 use super::mesh::Orbit;
 use crate::any_problem::DynProblem;
-use crate::linalg::{AnyMatrix, Dense, Matrix};
+use crate::linalg::{Dense, Matrix};
 use crate::name::Name;
 use crate::names;
 use crate::pool::Pool;
@@ -17,6 +19,7 @@ use crate::problem::{
     EvalError, ParamId, Parameter, Problem, Stability, check_finite, check_pattern,
 };
 use crate::step::dot;
+use work::Work;
 
 /// Largest number of unknowns of an interval, `n m`: its block is dense.
 pub const MAX_BLOCK: usize = 800;
@@ -57,70 +60,6 @@ pub struct CycleProblem<'a> {
     /// Whether the metric of the unknowns is the identity.
     plain: bool,
     work: Pool<Work>,
-}
-
-struct Work {
-    /// States at the Gauss points of an interval, and their derivatives times its length.
-    u: Vec<f64>,
-    du: Vec<f64>,
-    /// The unknowns of an interval, its right end included.
-    nodes: Vec<f64>,
-    f: Vec<f64>,
-    jacobian: AnyMatrix,
-    /// Its entries, row by row.
-    slopes: Vec<f64>,
-    unit: Vec<f64>,
-    /// For the metric.
-    weighed: Vec<f64>,
-    /// The state and the parameters whose multipliers are known.
-    known: Known,
-    /// Where and in which direction the slopes of their functions are known, and these.
-    along: Vec<f64>,
-    slopes_along: [f64; 2],
-    shifted: Vec<f64>,
-    latest: Latest,
-    /// For the multipliers alone.
-    matrix: Option<CycleMatrix>,
-}
-
-impl Work {
-    /// For cycles of this degree on so many intervals.
-    fn new(problem: &DynProblem<'_>, degree: usize, intervals: usize) -> Self {
-        let n = problem.dim();
-        let vector = |blocks: usize| vec![0.0; blocks * n];
-        Work {
-            u: vector(degree),
-            du: vector(degree),
-            nodes: vector(degree + 1),
-            f: vector(1),
-            jacobian: problem.new_jacobian(),
-            slopes: vector(n),
-            unit: vector(1),
-            weighed: vector(2),
-            known: Known::default(),
-            along: Vec::new(),
-            slopes_along: [0.0; 2],
-            shifted: vec![0.0; intervals * degree * n + 1],
-            latest: Latest::default(),
-            matrix: None,
-        }
-    }
-}
-
-/// The multipliers at a state.
-#[derive(Default)]
-struct Known {
-    /// The state and the parameters.
-    at: Vec<f64>,
-    multipliers: Vec<Multiplier>,
-    tests: [f64; 2],
-}
-
-impl Known {
-    fn is_at(&self, x: &[f64], p: &[f64]) -> bool {
-        let known = self.at.len() == x.len() + p.len();
-        known && self.at[..x.len()] == *x && self.at[x.len()..] == *p
-    }
 }
 
 /// A dense copy of a constant mass matrix, if it has full rank.
