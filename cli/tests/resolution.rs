@@ -64,3 +64,37 @@ fn a_diagram_says_it_too() {
     let picture = fs::read_to_string(out.join("diagram.svg")).unwrap();
     assert!(picture.contains("fig12 (elements too long: not resolved)"));
 }
+
+#[test]
+fn an_error_is_asked_for_and_kept() {
+    let place = tempfile::tempdir().unwrap();
+    let mut before = 0;
+    for tolerance in ["1e-3", "1e-5", "1e-7"] {
+        let asked = format!("mesh.tolerance={tolerance}");
+        let shown = arclen(place.path(), &["trace", "fig12", "--set", &asked, "--out", tolerance]);
+        let said = resolution(&place.path().join(tolerance).join("events.json"));
+        let elements = said["elements"].as_u64().unwrap();
+        assert!(elements >= before && said["enough"] == true, "{said}");
+        before = elements;
+        assert_eq!(said["mesh_tolerance"].as_f64().unwrap(), tolerance.parse::<f64>().unwrap());
+        assert_eq!(said["mesh_tolerance_met"], true);
+        assert!(said["force_mesh_error"].as_f64() <= said["mesh_tolerance"].as_f64());
+        let sentence =
+            format!("mesh: {elements} elements for mesh.tolerance = {tolerance}; halving");
+        assert!(shown.contains(&sentence), "{shown}");
+    }
+    assert!(before > 100);
+}
+
+#[test]
+fn an_error_of_the_mesh_is_known_under_a_lever() {
+    let place = tempfile::tempdir().unwrap();
+    let lever = ["device.kind=cantilever", "device.stiffness=5", "mesh.tolerance=1e-6"];
+    let keys: Vec<&str> = lever.iter().flat_map(|key| ["--set", key]).collect();
+    let shown =
+        arclen(place.path(), &[&["trace", "fig12"], keys.as_slice(), &["--out", "o"]].concat());
+    assert!(shown.contains("elements for mesh.tolerance = 1e-6"), "{shown}");
+    let said = resolution(&place.path().join("o").join("events.json"));
+    assert_eq!(said["mesh_tolerance_met"], true);
+    assert!(said.get("z0_mesh_error").is_none(), "{said}");
+}

@@ -260,6 +260,7 @@ fn coarsen(case: &mut ResolvedCase, most: usize) {
     // that of a problem of the catalogue is part of it
     if let Some(mesh) = case.problem.mesh_mut() {
         mesh.elements = mesh.elements.min(most);
+        mesh.tolerance = None;
     }
 }
 

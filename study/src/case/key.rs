@@ -31,6 +31,9 @@ pub(crate) const FRACTION: Range =
 /// Ratios of the longest element to the shortest.
 pub(super) const GRADINGS: Range =
     Range { holds: |x| (1.0..=1000.0).contains(&x), words: "from 1 (uniform) to 1000" };
+/// Tolerances of meshes.
+pub(super) const MESH_TOLERANCES: Range =
+    Range { holds: |x| (1e-10..=1e-2).contains(&x), words: "from 1e-10 to 1e-2" };
 /// Poisson's ratios of an elastic solid.
 pub(crate) const POISSON_RATIOS: Range =
     Range { holds: |x| x > -1.0 && x <= 0.5, words: "greater than -1 and at most 0.5" };

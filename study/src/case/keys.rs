@@ -10,7 +10,7 @@ pub(crate) use super::key::{
     ANY, FRACTION, NOT_NEGATIVE, POISSON_RATIOS, POISSON_SKALAK, POSITIVE, names,
 };
 pub use super::key::{Absent, Key, Keys, Kind, Range};
-use super::key::{GRADINGS, count, joined};
+use super::key::{GRADINGS, MESH_TOLERANCES, count, joined};
 pub(super) use super::key::{key, number, quantity};
 use Absent::{Other, Required};
 
@@ -141,8 +141,18 @@ pub(crate) const GRADING: Key = number(
     Other("uniform; under a ring load the problem's own"),
     "Longest element over shortest, shrinking towards the pole",
 );
+/// `mesh.tolerance`.
+pub(crate) const TOLERANCE: Key = number(
+    "tolerance",
+    MESH_TOLERANCES,
+    "sqrt(chi k_b)",
+    Other("a fixed mesh"),
+    "Error of the mesh to stay below, in place of a number of elements",
+);
 /// The table `[mesh]`.
-pub(crate) const MESH: [Key; 2] = [ELEMENTS, GRADING];
+pub(crate) const MESH: [Key; 3] = [ELEMENTS, GRADING, TOLERANCE];
+/// The same where meshes are fixed.
+pub(crate) const FIXED_MESH: [Key; 2] = [ELEMENTS, GRADING];
 
 /// `path.start`.
 pub(crate) const START: Key = number(

@@ -124,6 +124,8 @@ pub struct MeshCase {
     pub elements: usize,
     /// Longest element over shortest, shrinking towards the pole; uniform without it.
     pub grading: Option<f64>,
+    /// Error of the mesh to stay below, in `√(χk_b)`; the elements are chosen for it, and those above are not used.
+    pub tolerance: Option<f64>,
 }
 
 /// Which part of the branch is traced.

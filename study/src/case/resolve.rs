@@ -1,7 +1,7 @@
 //! From a tree of keys to a case: every key is checked, every default filled in.
 
 use super::device;
-use super::document::Table;
+use super::document::{Origin, Table};
 use super::error::{CaseError, Complaint};
 use super::keys::{self, ANY, Key, Kind, POISSON_SKALAK, Range, names};
 use super::name::own_name;
@@ -23,6 +23,7 @@ const SHELL: &[&str] = &names(&keys::SHELL);
 const DIMENSIONLESS: &[&str] = &names(&keys::GROUPS);
 const PHYSICAL: &[&str] = &names(&keys::PHYSICAL);
 const MESH: &[&str] = &names(&keys::MESH);
+const FIXED_MESH: &[&str] = &names(&keys::FIXED_MESH);
 const PATH: &[&str] = &names(&keys::PATH);
 const CONTACT_PATH: &[&str] = &names(&keys::CONTACT_PATH);
 const EVENTS: &[&str] = &names(&keys::EVENTS);
@@ -426,14 +427,44 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    pub(super) fn mesh(&self) -> Option<MeshCase> {
+    /// A mesh of so many elements.
+    pub(super) fn fixed_mesh(&self) -> Option<MeshCase> {
+        self.mesh_of(self.table("mesh", FIXED_MESH))
+    }
+
+    /// A mesh of so many elements, or one for a tolerance. What is laid over a file takes the place of what the
+    /// file says of either.
+    fn mesh(&self) -> Option<MeshCase> {
         let section = self.table("mesh", MESH);
+        let mesh = self.mesh_of(section);
+        let Some(given) = section.get("tolerance") else { return mesh };
+        let is_laid_over = |origin| matches!(origin, Origin::Given(_));
+        for fixed in ["elements", "grading"] {
+            let Some(node) = section.get(fixed) else { continue };
+            match (is_laid_over(given.origin), is_laid_over(node.origin)) {
+                (true, false) => {}
+                (false, true) => return mesh,
+                _ => {
+                    let why =
+                        format!("has {fixed} and tolerance; a tolerance chooses the elements");
+                    let place = given.origin.max(node.origin);
+                    self.reader.push(place, "mesh".to_string(), None, Complaint::Conflict(why));
+                    return None;
+                }
+            }
+        }
+        let tolerance = self.number(section, &keys::TOLERANCE)?;
+        let fixed = mesh?;
+        Some(MeshCase { tolerance: Some(tolerance), grading: None, ..fixed })
+    }
+
+    fn mesh_of(&self, section: Section<'_>) -> Option<MeshCase> {
         let elements = self.count(section, &keys::ELEMENTS);
         let grading = match section.get("grading") {
             None => None,
             Some(_) => Some(self.number(section, &keys::GRADING)?),
         };
-        Some(MeshCase { elements: elements?, grading })
+        Some(MeshCase { elements: elements?, grading, tolerance: None })
     }
 
     fn elements(&self, section: Section<'_>, range: ElementRange) -> Option<usize> {

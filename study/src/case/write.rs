@@ -134,6 +134,10 @@ fn physical(out: &mut Lines, given: &PhysicalCase) {
 
 pub(super) fn mesh(out: &mut Lines, mesh: MeshCase) {
     out.table("mesh");
+    if let Some(tolerance) = mesh.tolerance {
+        out.number("tolerance", tolerance);
+        return;
+    }
     out.count("elements", mesh.elements);
     if let Some(grading) = mesh.grading {
         out.number("grading", grading);

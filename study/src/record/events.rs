@@ -84,6 +84,10 @@ impl Serialize for ResolutionOf<'_> {
             map.serialize_entry("force_mesh_error_points", &error.samples)?;
             entry(&mut map, "z0_mesh_error", error.z0)?;
         }
+        if let Some(tolerance) = self.0.tolerance {
+            map.serialize_entry("mesh_tolerance", &tolerance)?;
+            map.serialize_entry("mesh_tolerance_met", &self.0.meets_tolerance())?;
+        }
         map.end()
     }
 }

@@ -372,6 +372,8 @@ pub struct ResolutionRecord {
     pub wanted: usize,
     /// How far the mesh moves the branch, where that was estimated.
     pub mesh_error: Option<MeshErrorRecord>,
+    /// The error of the mesh that was asked for, where one was.
+    pub tolerance: Option<f64>,
 }
 
 /// Estimates of what the mesh changes along a branch, from one twice as fine.
@@ -400,7 +402,9 @@ impl ResolutionRecord {
     /// A warning in a sentence, where there is one to be given.
     pub(super) fn text(&self) -> String {
         if self.enough {
-            return self.mesh_error.map_or_else(String::new, |error| error.text());
+            return self.mesh_error.map_or_else(String::new, |error| {
+                self.asked().unwrap_or_else(|| "mesh: ".to_owned()) + &error.text()
+            });
         }
         let film = if self.per_film_length.is_finite() {
             format!("{:.2} per film length ({} needed) and ", self.per_film_length, self.needed[0])
@@ -417,6 +421,25 @@ impl ResolutionRecord {
             self.needed[1],
             self.wanted,
         )
+    }
+
+    /// Whether the mesh's error is below what was asked for, at all places that were looked at; `None` where nothing
+    /// was asked for, or nothing is known.
+    pub fn meets_tolerance(&self) -> Option<bool> {
+        let (tolerance, error) = (self.tolerance?, self.mesh_error?);
+        Some(error.force.max(error.z0.unwrap_or(0.0)) <= tolerance)
+    }
+
+    /// What was asked for, and whether it was met.
+    fn asked(&self) -> Option<String> {
+        let (tolerance, elements) = (self.tolerance?, self.elements);
+        Some(if self.meets_tolerance()? {
+            format!("mesh: {elements} elements for mesh.tolerance = {tolerance:e}; ")
+        } else {
+            format!(
+                "mesh: mesh.tolerance = {tolerance:e} is not met by {elements} elements: take a smaller one; "
+            )
+        })
     }
 
     /// A title that says it.
@@ -443,7 +466,7 @@ impl MeshErrorRecord {
             format!(", folds and zeros of the force by at most {x:.0e} in z0")
         });
         format!(
-            "mesh: halving the elements moves the force by at most {force:.0e} at {samples} \
+            "halving the elements moves the force by at most {force:.0e} at {samples} \
              points{places}\n"
         )
     }

@@ -2,6 +2,7 @@
 
 use super::form::{StabilityColumns, certified, form};
 use super::mesh_error::MeshErrors;
+use super::mesh_for;
 use super::resolution::Resolved;
 use super::stability::Stability;
 use super::states::of_contact;
@@ -34,7 +35,7 @@ pub(super) fn run(
     let (traced, stability) = scanned(case, contact, observer)?;
     let Traced { problem, branch, maxwell, seconds } = traced;
     let errors = MeshErrors::of(&problem, &branch);
-    let resolved = Resolved::of(&problem, &branch).with(&errors);
+    let resolved = Resolved::of(&problem, &branch).with(&errors, &contact.mesh);
     let pictures = pictures(&resolved.titled(&case.name), &problem, &branch, &stability);
     let maxwell = Some(maxwell);
     let mut result = examined(case, &branch, seconds, &stability, Some(&resolved));
@@ -54,7 +55,7 @@ pub(super) fn run_reported(
     let Traced { problem, branch, maxwell, seconds } = traced;
     let states = of_contact(&problem, &branch.branch, branch.branch.points.len());
     let errors = MeshErrors::of(&problem, &branch);
-    let resolved = Resolved::of(&problem, &branch).with(&errors);
+    let resolved = Resolved::of(&problem, &branch).with(&errors, &contact.mesh);
     let title = resolved.titled(&case.name);
     let pictures = Pictures { states, ..pictures(&title, &problem, &branch, &stability) };
     let maxwell = Some(maxwell);
@@ -270,14 +271,23 @@ pub(super) fn shell(
     case: &ResolvedCase,
     contact: &ContactCase,
 ) -> Result<ContactProblem, RunError> {
-    build(contact).map_err(|error| RunError::Parameters { case: case.name.clone(), error })
+    let refused = |error| RunError::Parameters { case: case.name.clone(), error };
+    let fixed = |elements: usize| match contact.mesh.grading {
+        Some(ratio) => Mesh::graded(elements, ratio),
+        None => Mesh::uniform(elements),
+    };
+    let mesh = match contact.mesh.tolerance {
+        Some(tolerance) => mesh_for::tolerance(case, contact, tolerance)?,
+        None => fixed(contact.mesh.elements).map_err(refused)?,
+    };
+    build(contact, mesh).map_err(refused)
 }
 
-fn build(contact: &ContactCase) -> Result<ContactProblem, shell_contact::ParameterError> {
-    let mesh = match contact.mesh.grading {
-        Some(ratio) => Mesh::graded(contact.mesh.elements, ratio)?,
-        None => Mesh::uniform(contact.mesh.elements)?,
-    };
+/// The problem on a mesh.
+pub(super) fn build(
+    contact: &ContactCase,
+    mesh: Mesh,
+) -> Result<ContactProblem, shell_contact::ParameterError> {
     ContactProblem::with_potential(&contact.shell, &contact.groups, mesh, contact.potential)
 }
 

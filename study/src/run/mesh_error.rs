@@ -1,5 +1,6 @@
 //! How far the mesh moves a contact branch and its special points.
 
+use super::resolution::height;
 use crate::record::{MeshErrorRecord, PlaceError};
 use shell_contact::discretisation::{Refined, Shift};
 use shell_contact::{ContactBranch, ContactProblem};
@@ -19,30 +20,34 @@ impl MeshErrors {
         MeshErrors { events: Vec::new(), record: None }
     }
 
-    /// Of a branch under held plates; under a device nothing is known.
+    /// Of a branch. Under a device nothing is known of special points, whose places are in its parameter.
     pub(super) fn of(problem: &ContactProblem, traced: &ContactBranch) -> MeshErrors {
         let branch = &traced.branch;
-        let held = branch.parameter == "z0";
-        let Some(mut refined) = held.then(|| Refined::new(problem).ok()).flatten() else {
-            return MeshErrors::unknown();
-        };
+        let Ok(mut refined) = Refined::new(problem) else { return MeshErrors::unknown() };
+        let (height, n) = (height(branch), problem.mesh().unknowns());
         let mut look = |index: usize, kind| {
             let point = &branch.points[index];
             // beside the edge of the model the finer shell may be outside: then nothing is known
-            refined.shift(&point.u, &problem.parameters_at(point.p), kind).ok().flatten()
+            let (u, parameters) = (&point.u[..n], problem.parameters_at(height(point)));
+            refined.shift(u, &parameters, kind).ok().flatten()
         };
-        let found = branch.events.iter().map(|event| look(event.point, Some(&event.kind)));
+        let held = branch.parameter == "z0";
+        let found = branch.events.iter().filter(|_| held);
+        let found = found.map(|event| look(event.point, Some(&event.kind)));
         let events: Vec<Option<PlaceError>> =
             found.map(|shift| shift.map(|s| PlaceError { z0: s.z0, force: s.force })).collect();
         let ordinary: Vec<usize> =
             (0..branch.points.len()).filter(|&i| branch.points[i].event.is_none()).collect();
-        let every = ordinary.len().div_ceil(SAMPLES).max(1);
+        let last = ordinary.len().saturating_sub(1);
+        // both ends among them: the error often is the largest at one
+        let mut samples: Vec<usize> =
+            (0..SAMPLES).filter_map(|k| ordinary.get(k * last / (SAMPLES - 1)).copied()).collect();
+        samples.dedup();
         let (forces, heights) =
-            (span(traced, |i| force(traced, i)), span(traced, |i| branch.points[i].p));
-        let samples = ordinary.iter().skip(every / 2).step_by(every);
+            (span(traced, |i| force(traced, i)), span(traced, |i| height(&branch.points[i])));
         let mut worst: Option<(f64, usize)> = None;
         let mut looked_at = 0;
-        for &index in samples {
+        for index in samples {
             let Some(shift) = look(index, None) else { continue };
             // on a steep part the height at a given force is what is off
             let error = least(shift, forces / heights);
@@ -54,7 +59,7 @@ impl MeshErrors {
         let places = events.iter().flatten().filter_map(|event| event.z0);
         let record = worst.map(|(force, index)| MeshErrorRecord {
             force,
-            at: branch.points[index].p,
+            at: height(&branch.points[index]),
             z0: places.max_by(f64::total_cmp),
             samples: looked_at,
         });

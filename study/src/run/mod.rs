@@ -9,6 +9,7 @@ mod form;
 mod general;
 mod map;
 mod mesh_error;
+mod mesh_for;
 mod orbits;
 mod resolution;
 mod ring_load;
@@ -65,6 +66,14 @@ pub enum RunError {
         case: String,
         /// What it says.
         error: shell_contact::ParameterError,
+    },
+    /// No mesh for a tolerance.
+    #[error("{case}: mesh.tolerance: {error}; ask for less, or for a fixed mesh by mesh.elements")]
+    Tolerance {
+        /// Name of the case.
+        case: String,
+        /// What it says.
+        error: shell_contact::discretisation::ToleranceError,
     },
     /// The problem of the catalogue refuses the case.
     #[error("{case}: {error}")]

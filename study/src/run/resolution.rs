@@ -1,6 +1,7 @@
 //! Whether the elements resolve the film and the shell along a contact branch.
 
 use super::mesh_error::MeshErrors;
+use crate::case::MeshCase;
 use crate::record::{Cell, ResolutionRecord};
 use continuation::{Branch, Point};
 use shell_contact::resolution::{FEWEST_PER_FILM_LENGTH, FEWEST_PER_WAVELENGTH};
@@ -45,6 +46,7 @@ impl Resolved {
             elements,
             wanted: (worst.factor() * elements as f64).ceil() as usize,
             mesh_error: None,
+            tolerance: None,
         });
         Resolved { each, record }
     }
@@ -61,10 +63,11 @@ impl Resolved {
         number.map_or(Cell::Empty, Cell::from)
     }
 
-    /// The same with what is known of the mesh's errors.
-    pub(super) fn with(mut self, errors: &MeshErrors) -> Resolved {
+    /// The same with what is known of the mesh's errors, and what was asked for.
+    pub(super) fn with(mut self, errors: &MeshErrors, mesh: &MeshCase) -> Resolved {
         if let Some(record) = &mut self.record {
             record.mesh_error = errors.record();
+            record.tolerance = mesh.tolerance;
         }
         self
     }

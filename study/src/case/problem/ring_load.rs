@@ -48,7 +48,7 @@ impl Resolver<'_> {
         let bending = self.required(groups, &keys::BENDING);
         let pressure = self.or_default(groups, &PRESSURE);
         let gas_exponent = self.or_default(groups, &GAS_EXPONENT);
-        let mesh = self.mesh();
+        let mesh = self.fixed_mesh();
         let path = self.path(None, ANGLE, ANGLE);
         let problem = match (shell, bending, pressure, gas_exponent, mesh) {
             (Some(shell), Some(bending), Some(pressure), Some(gas_exponent), Some(mesh)) => {

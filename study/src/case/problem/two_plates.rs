@@ -88,7 +88,7 @@ impl<'a> Resolver<'a> {
         let groups = self.groups_without_film(groups);
         let held = self.equator();
         let plates = self.plates(held.unwrap_or(false));
-        let mesh = self.mesh();
+        let mesh = self.fixed_mesh();
         let on_spring = plates.is_some_and(|[top, _]| top.is_some_and(|p| p.stiffness.is_some()));
         let (start, end) = if on_spring { (ANY, ANY) } else { (CONTACT_START, POSITIVE) };
         let path = self.path(None, start, end);

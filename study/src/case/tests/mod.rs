@@ -116,12 +116,33 @@ fn a_dimensionless_case_resolves_with_its_defaults() {
     assert_eq!(contact.shell, Shell { law: Law::Hooke, poisson: 0.5 });
     assert_eq!(contact.groups.surface_tension, 0.0);
     assert_eq!(contact.groups.gas_exponent, 1.07);
-    assert_eq!(contact.mesh, MeshCase { elements: 200, grading: None });
+    assert_eq!(contact.mesh, MeshCase { elements: 200, grading: None, tolerance: None });
     assert_eq!((case.path.start, case.path.end, case.path.max_points), (1.15, 0.65, 5000));
     let defaults =
         read(&GOOD.replace("[mesh]\nelements = 200\n", "").replace("poisson = 0.5\n", ""));
     let ProblemCase::Contact(contact) = &defaults.problem else { panic!("{defaults:?}") };
     assert_eq!((contact.mesh.elements, contact.shell.poisson), (400, 0.5));
+}
+
+#[test]
+fn a_tolerance_takes_the_place_of_elements() {
+    let mesh = |text: &str, overrides: &[&str]| {
+        let overrides: Vec<Override> = overrides.iter().copied().map(Override::new).collect();
+        read_with(text, &overrides).map(|loaded| *loaded.case.problem.mesh().unwrap())
+    };
+    let asked = GOOD.replace("elements = 200", "tolerance = 1e-6");
+    assert_eq!(mesh(&asked, &[]).unwrap().tolerance, Some(1e-6));
+    // what is laid over a file counts
+    assert_eq!(mesh(GOOD, &["mesh.tolerance=1e-7"]).unwrap().tolerance, Some(1e-7));
+    let fixed = mesh(&asked, &["mesh.elements=90"]).unwrap();
+    assert_eq!((fixed.elements, fixed.tolerance), (90, None));
+    let both = GOOD.replace("elements = 200", "elements = 200\ntolerance = 1e-6");
+    says(&mesh(&both, &[]).unwrap_err(), &["mesh", "elements and tolerance"]);
+    says(&mesh(GOOD, &["mesh.tolerance=1e-6", "mesh.grading=3"]).unwrap_err(), &["grading and"]);
+    says(&mesh(GOOD, &["mesh.tolerance=1"]).unwrap_err(), &["mesh.tolerance = 1", "1e-10 to 1e-2"]);
+    // as it was read
+    let written = read(&asked).to_toml();
+    assert!(written.contains("[mesh]\ntolerance = 1e-6\n"), "{written}");
 }
 
 #[test]
