@@ -288,7 +288,7 @@ pub(crate) fn lyapunov_coefficient(
     // of slow oscillations beside fast modes more: rounding is that of the whole matrix
     let whole = probe.jacobian.norm() * super::max_abs(&a.u).max(super::max_abs(&b.u));
     let reference = reference * (whole / reference).sqrt().clamp(1.0, 20.0);
-    let amplitude = probe.natural(z, &a, reference).unwrap_or(1.0);
+    let amplitude = probe.natural(z, [&a, &b], reference).unwrap_or(1.0);
     let mut value = [f64::NAN; 3];
     for (value, x) in value.iter_mut().zip([4.0, 2.0, 1.0]) {
         let x = x * amplitude;

@@ -325,28 +325,45 @@ impl<'a> Probe<'a> {
         out
     }
 
-    /// Largest component of `([F_u F_p](z + x v) − [F_u F_p](z)) v`, given `base = −[F_u F_p](z) v`.
+    /// Largest component of `([F_u F_p](z + x v) − [F_u F_p](z)) x_i`, given every
+    /// `base_i = −[F_u F_p](z) x_i`.
     fn change(
         &mut self,
         z: &Extended,
         v: &Extended,
         x: f64,
-        base: &[f64],
+        (xs, base): (&[&Extended], &[Vec<f64>]),
         out: &mut [Vec<f64>],
     ) -> Result<f64, EvalError> {
-        out[0].copy_from_slice(base);
-        self.accumulate(z, v, x, 1.0, &[v], out)?;
-        Ok(super::max_abs(&out[0]))
+        out.iter_mut().zip(base).for_each(|(out, base)| out.copy_from_slice(base));
+        self.accumulate(z, v, x, 1.0, xs, out)?;
+        Ok(out.iter().map(|out| super::max_abs(out)).fold(0.0, f64::max))
     }
 
-    /// [`Self::amplitude`] to a factor of two or so, where the change is about linear in it: steps
-    /// that do not depend on the unit of the unknowns.
-    pub(crate) fn natural(&mut self, z: &Extended, v: &Extended, reference: f64) -> Option<f64> {
-        let mut x = self.amplitude(z, v, reference)?;
-        let base = self.without(z, v).ok()?;
-        let mut out = vec![vec![0.0; self.dim()]];
+    /// [`Self::amplitude`] in the plane of two vectors to a factor of two or so, where the change is about linear in it: steps
+    /// that do not depend on the unit of the unknowns. The smaller one of both: a problem may be linear in one of them.
+    pub(crate) fn natural(
+        &mut self,
+        z: &Extended,
+        plane: [&Extended; 2],
+        reference: f64,
+    ) -> Option<f64> {
+        let mut base = Vec::with_capacity(2);
+        for v in plane {
+            base.push(self.without(z, v).ok()?);
+        }
+        let applied = (&plane[..], &base[..]);
+        let mut smallest = None::<(f64, &Extended)>;
+        for v in plane {
+            let found = self.amplitude_over(z, v, reference, applied);
+            if let Some(x) = found.filter(|x| smallest.is_none_or(|(least, _)| *x < least)) {
+                smallest = Some((x, v));
+            }
+        }
+        let (mut x, v) = smallest?;
+        let mut out = vec![vec![0.0; self.dim()]; 2];
         for _ in 0..3 {
-            match self.change(z, v, x, &base, &mut out) {
+            match self.change(z, v, x, applied, &mut out) {
                 Ok(change) if change > 0.0 => x *= (reference / change).clamp(0.01, 20.0),
                 _ => break,
             }
@@ -360,7 +377,7 @@ impl<'a> Probe<'a> {
     /// `v` as far as can be seen.
     pub(crate) fn amplitude(&mut self, z: &Extended, v: &Extended, reference: f64) -> Option<f64> {
         let base = self.without(z, v).ok()?;
-        self.amplitude_over(z, v, reference, &base)
+        self.amplitude_over(z, v, reference, (&[v], &[base]))
     }
 
     /// The same where the matrix that was assembled last is that at `z`.
@@ -371,7 +388,7 @@ impl<'a> Probe<'a> {
         reference: f64,
     ) -> Option<f64> {
         let base = self.without_here(v);
-        self.amplitude_over(z, v, reference, &base)
+        self.amplitude_over(z, v, reference, (&[v], &[base]))
     }
 
     fn amplitude_over(
@@ -379,13 +396,13 @@ impl<'a> Probe<'a> {
         z: &Extended,
         v: &Extended,
         reference: f64,
-        base: &[f64],
+        applied: (&[&Extended], &[Vec<f64>]),
     ) -> Option<f64> {
         let mut x = 1.0;
-        let mut out = vec![vec![0.0; self.dim()]];
+        let mut out = applied.1.to_vec();
         let (mut too_small, mut too_large) = (0.0_f64, f64::INFINITY);
         for _ in 0..40 {
-            let change = self.change(z, v, x, base, &mut out).map(|change| change / reference);
+            let change = self.change(z, v, x, applied, &mut out).map(|change| change / reference);
             match change {
                 Ok(m) if (0.05..=5.0).contains(&m) => return Some(x),
                 Ok(m) if m < 0.05 => {

@@ -5,6 +5,7 @@
 mod bands;
 pub(crate) mod branch_points;
 mod hopf;
+mod hopf_by_differences;
 mod invariance;
 mod large;
 #[allow(dead_code, reason = "the factors for one parameter")]
