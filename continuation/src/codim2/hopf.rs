@@ -211,7 +211,7 @@ impl<'a> HopfCurve<'a> {
     }
 
     /// Drops zeros of the first Lyapunov coefficient on whose sides it is not known to have different
-    /// signs: where it tends to zero its errors change sign.
+    /// signs, and to be larger: where it tends to zero its errors change sign, and at a pole it does itself.
     fn confirm(&self, curve: &mut Curve) {
         let n = self.base.problem.dim();
         for index in (0..curve.branch.events.len()).rev() {
@@ -224,14 +224,16 @@ impl<'a> HopfCurve<'a> {
             let apart = |other: &&Point| (other.s - at.s).abs() > 1e2 * event.error_estimate;
             let before = points[..event.point].iter().rev().find(apart);
             let after = points[event.point + 1..].iter().find(apart);
+            let here = at.observables[self.test].abs();
             let mut signs = [before, after].map(|side| {
                 side.map_or(0.0, |side| {
                     let mut p = self.base.start();
                     p[self.base.second_of_curve().0] = side.p;
                     let work = &mut *self.work.get();
                     let value = self.lyapunov(work, &side.u[..n + 2], &p);
-                    // a sign that the error allows
-                    value.ok().filter(|l| l.abs() > 2.0 * work.error).map_or(0.0, f64::signum)
+                    // a sign that the error allows; beside a pole, as at zero-Hopf points, less than there
+                    let known = |l: &f64| l.abs() > 2.0 * work.error && l.abs() > 2.0 * here;
+                    value.ok().filter(known).map_or(0.0, f64::signum)
                 })
             });
             // at an end of the curve one side has to do

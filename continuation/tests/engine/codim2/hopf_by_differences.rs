@@ -105,3 +105,35 @@ fn lyapunov_coefficients_of_systems_with_few_terms() {
     }
     assert!(signs > 150, "{signs}");
 }
+
+/// Rossler's system, `z′ = b + z(x − c)`: at `a = b`, `c = 2a` a zero-Hopf point, where the first Lyapunov coefficient has a
+/// pole. It changes its sign there, which is no generalised Hopf point.
+#[test]
+fn the_sign_changes_at_a_pole() {
+    for k in 0..8 {
+        let b = 0.13 + 0.03 * f64::from(k);
+        let problem = DenseProblem::from_residual(3, &["c", "a"], move |u, p, r| {
+            r[0] = -u[1] - u[2];
+            r[1] = u[0] + p[1] * u[1];
+            r[2] = b + u[2] * (u[0] - p[0]);
+        })
+        .boxed();
+        let (a, c) = (0.8 * b, 3.0_f64);
+        let z = (c - (c * c - 4.0 * a * b).sqrt()) / (2.0 * a);
+        let settings = Settings { domain: Some((0.0, 3.5)), ..Settings::default() };
+        let settings = Settings { increasing: Some(false), max_points: 200, ..settings };
+        let branch = Tracer::new(&problem, "c", &[a * z, -z, z], &[c, a], settings)
+            .unwrap()
+            .run(&mut |_| ControlFlow::Continue(()));
+        let hopf = branch.events_of(&EventKind::Hopf).next().unwrap();
+        let curve = HopfCurve::at(&problem, &branch, hopf, "a").unwrap();
+        let settings =
+            Settings { domain: Some((0.5 * b, 1.2 * b)), max_points: 300, ..Settings::default() };
+        let found = curve.trace(&settings, &[], &mut |_| ControlFlow::Continue(())).unwrap().branch;
+        let poles: Vec<f64> = found.events_of(&EventKind::ZeroHopf).map(|event| event.p).collect();
+        assert!(poles.len() == 1 && (poles[0] / b - 1.0).abs() < 1e-7, "{b}: {poles:?}");
+        for event in found.events_of(&EventKind::GeneralisedHopf) {
+            assert!((event.p / b - 1.0).abs() > 1e-6, "{b}: {event:?}");
+        }
+    }
+}
