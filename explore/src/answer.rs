@@ -105,7 +105,11 @@ pub(crate) fn branch(
     let (examined, full) = examined(case, result);
     let elements = match &case.problem {
         ProblemCase::Catalogue(problem) => problem.elements,
-        shell => shell.mesh().map(|mesh| mesh.elements),
+        // a tolerance chooses them
+        shell => {
+            let traced = result.resolution.map(|record| record.elements);
+            traced.or_else(|| shell.mesh().map(|mesh| mesh.elements))
+        }
     };
     let mut stopped = result.stopped_because.to_string();
     if *cut {
