@@ -326,6 +326,21 @@ pub enum DataError {
         /// Median at the least height, N.
         deep: f64,
     },
+    /// A line with more fields than there are names.
+    #[error(
+        "{file}, line {line}: {found} fields under {names} names: numbers with a decimal comma need another separator \
+         between columns (data.separator, data.decimal)"
+    )]
+    MoreFields {
+        /// The file.
+        file: String,
+        /// The line.
+        line: usize,
+        /// How many fields it has.
+        found: usize,
+        /// How many columns have names.
+        names: usize,
+    },
     /// Commas that may be decimal.
     #[error("{file}: there are commas in numbers; say --set data.decimal=comma, or remove them")]
     DecimalComma {

@@ -71,6 +71,17 @@ fn a_decimal_comma_is_told() {
     assert!((curve.segments[0].height[1] - 1.99e-6).abs() < 1e-18);
 }
 
+/// With commas between columns too the halves of numbers would be read as columns.
+#[test]
+fn halves_of_numbers_are_no_columns() {
+    let halves = ramp("segment,height [nm],force [nN]", ",", |h, f| format!("{h},5,{f},5"));
+    let words = refused("a.csv", &halves, &Layout::default());
+    assert!(words.contains("a.csv, line 2: 5 fields under 3 names"), "{words}");
+    // a separator at the end of each line is none
+    let ends = ramp("segment,height [nm],force [nN]", ",", |h, f| format!("{h},{f},,"));
+    assert_eq!(read("a.csv", ends.as_bytes(), &Layout::default()).unwrap().len(), 40);
+}
+
 #[test]
 fn volts_with_the_sensitivity_and_spring_constant_of_the_lever() {
     let lever = |sensitivity, spring_constant| Layout {

@@ -124,6 +124,13 @@ fn csv(name: &str, text: &str, layout: &Layout) -> Result<Curve, DataError> {
     for record in reader.records() {
         let record = record.map_err(bad)?;
         let line = record.position().map_or(0, |p| p.line() as usize);
+        // a separator at the end of each line adds an empty field
+        let filled = record.iter().zip(1..).filter(|(field, _)| !field.is_empty());
+        let found = filled.last().map_or(0, |(_, count)| count);
+        if found > headers.len() {
+            let (file, names) = (name.to_owned(), headers.len());
+            return Err(DataError::MoreFields { file, line, found, names });
+        }
         rows.push((line, record.iter().map(str::to_owned).collect()));
     }
     curve(&Rows { file: name, headers, rows, si: false, comma }, layout)
