@@ -18,6 +18,7 @@
 //! Numbers between points are cubic Hermite interpolants in the arclength, of `z0` and `F̂` separately.
 
 use crate::branch::{Group, Node, ShellBranch};
+use crate::data::Direction;
 use crate::error::ModelError;
 use crate::parameters::{Key, Parameters};
 
@@ -49,6 +50,17 @@ pub struct Stretch {
     s: (f64, f64),
     /// Points from `nodes.0` to `nodes.1` lie in it.
     nodes: (usize, usize),
+}
+
+/// A jump under the lever.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeverJump {
+    /// The stretch that ends.
+    pub from: usize,
+    /// The one that is reached.
+    pub to: usize,
+    /// Travel at which it happens, m.
+    pub travel: f64,
 }
 
 /// Most stretches: a curve with more is that of a mesh that does not resolve its film.
@@ -260,6 +272,51 @@ impl LeverBranch {
                 _ => self.derivative(key, k, s, (z, f, df, dz), d),
             });
         }
+    }
+
+    /// The jumps on the way from stretch `start` to the travel `end`: each from the fold at which a stretch ends to the
+    /// next that reaches as far.
+    pub fn jumps(&self, direction: Direction, start: usize, end: f64) -> Vec<LeverJump> {
+        let mut found = Vec::new();
+        let mut from = start;
+        while let Some(stretch) = self.stretches.get(from) {
+            let next = match direction {
+                Direction::Approach if stretch.ends_at_fold && stretch.to < end => {
+                    let travel = stretch.to;
+                    let beyond = |k: &usize| self.stretches[*k].to > travel;
+                    (from + 1..self.stretches.len()).find(beyond).map(|to| (to, travel))
+                }
+                Direction::Retract if stretch.begins_at_fold && stretch.from > end => {
+                    let travel = stretch.from;
+                    let beyond = |k: &usize| self.stretches[*k].from < travel;
+                    (0..from).rev().find(beyond).map(|to| (to, travel))
+                }
+                _ => None,
+            };
+            let Some((to, travel)) = next else { break };
+            found.push(LeverJump { from, to, travel });
+            from = to;
+        }
+        found
+    }
+
+    /// Travel of the fold at which a stretch ends in a direction, and its derivatives by the coordinates of the keys.
+    /// There `X_s = 0`, so that what the fold moves by along the branch does not count:
+    ///
+    /// ```text
+    /// dX/dx = n R0_x (1 − z0) + (S_x F̂ + S Σ_q F̂_q q_x)/K − S F̂ K_x/K²
+    /// ```
+    pub fn fold(&self, stretch: usize, direction: Direction, keys: &[Key]) -> (f64, Vec<f64>) {
+        let Some(stretch) = self.stretches.get(stretch) else { return (f64::NAN, Vec::new()) };
+        let (k, s) = match direction {
+            Direction::Approach => (stretch.nodes.1, stretch.s.1),
+            Direction::Retract => (stretch.nodes.0.saturating_sub(1), stretch.s.0),
+        };
+        let (z, f, dz, df) = self.between(k, s);
+        let lever = self.parameters[Key::SpringConstant];
+        // the same sum as of the force at fixed travel, which `D` divides
+        let by_key = keys.iter().map(|&key| self.derivative(key, k, s, (z, f, df, dz), dz) / lever);
+        (self.travel(z, f), by_key.collect())
     }
 
     /// `dF/dx` at fixed travel.

@@ -44,8 +44,8 @@ pub struct Prediction {
     pub by_key: Vec<f64>,
     /// Which stable stretch each sample is on.
     pub stretch: Vec<usize>,
-    /// Whether the sample lies on its stretch, not beyond an end of it.
-    pub inside: Vec<bool>,
+    /// How far its travel lies beyond an end of its stretch, m: negative before the beginning, 0 inside.
+    pub beyond: Vec<f64>,
 }
 
 /// The groups that keys act through.
@@ -155,52 +155,72 @@ impl Model {
     ) -> Prediction {
         let farthest = curve.farthest();
         let gauge = self.nominal_spring_constant / p[Key::SpringConstant];
+        let mut reading = Reading::default();
+        let mut way = Vec::with_capacity(curve.len());
+        for segment in &curve.segments {
+            if branch.stretches.len() < 2 {
+                way.resize(way.len() + segment.height.len(), 0);
+                continue;
+            }
+            let misfit: Vec<Vec<f64>> = branch
+                .stretches
+                .iter()
+                .map(|stretch| {
+                    segment
+                        .height
+                        .iter()
+                        .zip(&segment.force)
+                        .map(|(height, force)| {
+                            branch.read(stretch, p[Key::Contact] - height, &[], &mut reading);
+                            let model = gauge * reading.force + baseline(p, farthest, *height);
+                            // one outlier does not decide between stretches
+                            (weight * (force - model)).powi(2).min(1e4)
+                        })
+                        .collect()
+                })
+                .collect();
+            way.extend(assign(segment.direction, &misfit));
+        }
+        self.predict_on(curve, branch, p, keys, way)
+    }
+
+    /// What would be read if each sample were on the stretch that `way` says.
+    pub fn predict_on(
+        &self,
+        curve: &Curve,
+        branch: &LeverBranch,
+        p: &Parameters,
+        keys: &[Key],
+        way: Vec<usize>,
+    ) -> Prediction {
+        let farthest = curve.farthest();
+        let gauge = self.nominal_spring_constant / p[Key::SpringConstant];
         let mut out = Prediction::default();
         let mut reading = Reading::default();
-        for segment in &curve.segments {
-            let travel: Vec<f64> = segment.height.iter().map(|h| p[Key::Contact] - h).collect();
-            let baseline: Vec<f64> = segment
-                .height
-                .iter()
-                .map(|h| p[Key::Offset] + p[Key::Tilt] * (farthest - h))
-                .collect();
-            let way = if branch.stretches.len() > 1 {
-                let misfit: Vec<Vec<f64>> = branch
-                    .stretches
-                    .iter()
-                    .map(|stretch| {
-                        (0..travel.len())
-                            .map(|i| {
-                                branch.read(stretch, travel[i], &[], &mut reading);
-                                let model = gauge * reading.force + baseline[i];
-                                // one outlier does not decide between stretches
-                                (weight * (segment.force[i] - model)).powi(2).min(1e4)
-                            })
-                            .collect()
-                    })
-                    .collect();
-                assign(segment.direction, &misfit)
-            } else {
-                vec![0; travel.len()]
-            };
-            for (i, &at) in way.iter().enumerate() {
-                let stretch = &branch.stretches[at];
-                branch.read(stretch, travel[i], keys, &mut reading);
-                out.force.push(gauge * reading.force + baseline[i]);
-                out.height.push(reading.height);
-                out.stretch.push(at);
-                out.inside.push(travel[i] >= stretch.from && travel[i] <= stretch.to);
-                for (key, by) in keys.iter().zip(&reading.by_key) {
-                    out.by_key.push(match key {
-                        Key::Offset => 1.0,
-                        Key::Tilt => farthest - segment.height[i],
-                        // a stiffer lever than thought: the same deflection is more force
-                        Key::SpringConstant => gauge * (by - reading.force),
-                        _ => gauge * by,
-                    });
-                }
+        let heights = curve.segments.iter().flat_map(|segment| &segment.height);
+        for (&at, &height) in way.iter().zip(heights) {
+            let stretch = &branch.stretches[at];
+            let travel = p[Key::Contact] - height;
+            branch.read(stretch, travel, keys, &mut reading);
+            out.force.push(gauge * reading.force + baseline(p, farthest, height));
+            out.height.push(reading.height);
+            out.beyond.push(travel - travel.clamp(stretch.from, stretch.to));
+            for (key, by) in keys.iter().zip(&reading.by_key) {
+                out.by_key.push(match key {
+                    Key::Offset => 1.0,
+                    Key::Tilt => farthest - height,
+                    // a stiffer lever than thought: the same deflection is more force
+                    Key::SpringConstant => gauge * (by - reading.force),
+                    _ => gauge * by,
+                });
             }
         }
+        out.stretch = way;
         out
     }
+}
+
+/// What is read at a height where nothing touches, N.
+fn baseline(p: &Parameters, farthest: f64, height: f64) -> f64 {
+    p[Key::Offset] + p[Key::Tilt] * (farthest - height)
 }

@@ -153,10 +153,10 @@ fn information(
     prediction: Prediction,
 ) -> Vec<f64> {
     let keys = &setup.free;
-    let used = (0..prediction.inside.len()).map(|i| {
+    let used = (0..prediction.beyond.len()).map(|i| {
         let jump =
             |j: usize| prediction.stretch.get(j).is_some_and(|s| *s != prediction.stretch[i]);
-        prediction.inside[i] && !jump(i + 1) && !jump(i.wrapping_sub(1))
+        prediction.beyond[i] == 0.0 && !jump(i + 1) && !jump(i.wrapping_sub(1))
     });
     let objective = Objective {
         curve,
@@ -171,6 +171,7 @@ fn information(
         attended: Attended::default(),
         bounds: vec![(f64::NEG_INFINITY, f64::INFINITY); keys.len()],
         robust: false,
+        guide: None,
     };
     let mut at = objective.sum(prediction);
     objective.add_priors(&objective.place(&setup.base), &mut at);

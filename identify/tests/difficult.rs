@@ -2,51 +2,22 @@
 //! wait.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
+#[path = "common/buckling.rs"]
+mod buckling;
 mod common;
 
-use common::{Normal, heights, open, parameters, truth};
+use buckling::{draw, measure};
+use common::{heights, open, parameters, truth};
 use identify::attend::Attended;
 use identify::branch::{Effort, Group, Span, trace};
-use identify::data::{Curve, Direction};
 use identify::fit::Setup;
 use identify::fit::objective::{DerivedPrior, Prior};
-use identify::lever::Reading;
 use identify::model::Model;
 use identify::uncertainty::Derived;
 use identify::{FitError, Key, LawName, ModelError, Parameters, Profiles};
 use identify::{Progress, Stage, identify, identify_attended};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-
-/// What an instrument reads that follows each stretch to its end: jumps are where the lever jumps, not where data
-/// say so.
-fn measure(curve: &mut Curve, model: &Model, p: &Parameters, noise: f64, seed: u64) {
-    let mut normal = Normal(seed);
-    let (branch, _) = model.branch(curve, p, &[]).unwrap();
-    let stretches = &branch.stretches;
-    let farthest = curve.farthest();
-    let (mut at, mut reading) = (0, Reading::default());
-    for segment in &mut curve.segments {
-        for (height, force) in segment.height.iter().zip(&mut segment.force) {
-            let travel = p[Key::Contact] - height;
-            match segment.direction {
-                Direction::Approach => {
-                    while at + 1 < stretches.len() && travel > stretches[at].to {
-                        at += 1;
-                    }
-                }
-                Direction::Retract => {
-                    while at > 0 && travel < stretches[at].from {
-                        at -= 1;
-                    }
-                }
-            }
-            branch.read(&stretches[at], travel, &[], &mut reading);
-            let baseline = p[Key::Offset] + p[Key::Tilt] * (farthest - height);
-            *force = reading.force + baseline + noise * normal.next();
-        }
-    }
-}
 
 /// A polymer shell of 25 nm (E = 2.1 GPa) with strong adhesion: it snaps in, and buckles with a jump of hundreds of
 /// nanonewtons. Shells without the jump are minima too.
@@ -88,6 +59,15 @@ fn a_shell_that_buckles_is_found_from_the_grid() {
         let e = report.estimate(key).unwrap();
         assert!((e.value / truth(&p, key) - 1.0).abs() < 0.03, "{key}: {:e}", e.value);
     }
+}
+
+/// Random shells of that kind; `benches/coverage.rs` has fifty.
+#[test]
+fn most_random_shells_that_buckle_are_found() {
+    let drawn = (0..30).filter_map(|seed| Some((seed, draw(seed)?)));
+    let found: Vec<bool> = drawn.map(|(seed, shell)| shell.is_found(seed)).collect();
+    let missed = found.iter().filter(|found| !**found).count();
+    assert!(found.len() >= 8 && missed * 4 <= found.len(), "{missed} of {} missed", found.len());
 }
 
 /// Shells at the bounds of the search: no branch takes more than its budget, whatever comes of it.

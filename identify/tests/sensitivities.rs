@@ -120,3 +120,46 @@ fn readings_agree_with_differences() {
         }
     }
 }
+
+/// Where a stretch ends under the lever, by every coordinate: of a shell that buckles, both ways.
+#[test]
+fn folds_agree_with_differences() {
+    use identify::data::Direction::{Approach, Retract};
+    let mut p = parameters([52.5, 3.646e-15, 0.105, 50e-9, 1.5e-6, 15.0, 6e-6]);
+    p[Key::Poisson] = 0.4;
+    p[Key::SurfaceTension] = 0.05;
+    let curve = heights(8e-6, 5.1e-6, 60);
+    let effort = Effort { elements: 100, force_error: 1e-11, ..EFFORT };
+    let law = LawName::Hooke;
+    let model = Model { law, contacts: 2, nominal_spring_constant: 15.0, effort };
+    let keys: Vec<Key> = Key::ALL.into_iter().filter(|key| *key != Key::MooneyB).collect();
+    let folds = |p: &Parameters| {
+        let (branch, _) = model.branch(&curve, p, &keys).unwrap();
+        let last = branch.stretches.len() - 1;
+        let jumps = branch.jumps(Approach, 0, f64::INFINITY);
+        assert_eq!(branch.jumps(Retract, last, f64::NEG_INFINITY).len(), jumps.len());
+        assert_eq!((last, jumps.len()), (1, 1));
+        [branch.fold(0, Approach, &keys), branch.fold(1, Retract, &keys)]
+    };
+    let found = folds(&p);
+    for (k, key) in keys.iter().enumerate() {
+        let h = if key.is_logarithmic() || *key == Key::GasExponent { 1e-3 } else { 1e-4 };
+        let at = |h: f64| {
+            let mut q = p;
+            q[*key] = key.value(key.coordinate(p[*key]) + h);
+            folds(&q)
+        };
+        // baseline and contact point are the reader's
+        let own = !matches!(key, Key::Contact | Key::Offset | Key::Tilt);
+        let (high, low) = if own { (at(h), at(-h)) } else { (found.clone(), found.clone()) };
+        for end in 0..2 {
+            let slope = (high[end].0 - low[end].0) / (2.0 * h);
+            let off = (found[end].1[k] - slope).abs();
+            assert!(
+                off <= 5e-3 * slope.abs() + 1e-10,
+                "{key:?} {end}: {:e} is {slope:e}",
+                found[end].1[k]
+            );
+        }
+    }
+}

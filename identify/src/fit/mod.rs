@@ -3,7 +3,9 @@
 //! Nothing depends on clocks or chance: the same curve and the same knowledge give the same fit. Budgets are
 //! numbers of points and of evaluations.
 
+mod buckling;
 pub mod descent;
+pub mod guide;
 pub mod objective;
 mod search;
 pub mod starts;
@@ -16,11 +18,12 @@ use crate::lever::LeverBranch;
 use crate::model::Model;
 use crate::parameters::{Key, Parameters};
 use descent::{BOLD, CAREFUL, Limits, Minimum, descend, descend_from};
+use guide::Guide;
 use nalgebra::DVector;
 use objective::{DerivedPrior, Objective, Prior, Residuals};
 use search::search;
 use shell_contact::LawName;
-use starts::{AGAIN, Look, grid, look};
+use starts::{Look, look};
 use std::f64::consts::PI;
 
 /// What the laboratory knows and asks for.
@@ -267,6 +270,7 @@ pub fn check<'a>(curve: &'a Curve, setup: &Setup) -> Result<(Objective<'a>, Look
         attended: Attended::default(),
         bounds: bounds.collect(),
         robust: setup.robust,
+        guide: None,
     };
     Ok((objective, look))
 }
@@ -301,16 +305,9 @@ pub fn fit<'a>(
     let thin_curve = curve.thinned(stride);
     let mut thin = Objective { curve: &thin_curve, ..full.clone() };
     thin.used = used_samples(&thin_curve, setup);
-    thin.model.effort.work = GRID_WORK;
-    let mut starts = grid(&thin, &look);
-    thin.model.effort.work = ROUGH_WORK;
-    if starts.len() < FEWEST_STARTS && !attended.is_stopped() {
-        starts = grid(&thin, &look);
-    }
+    let guide = Guide::of(curve, full.noise, &look);
+    let mut found = search(&mut thin, &look, guide.as_ref());
     let none = || if attended.is_stopped() { FitError::Stopped } else { FitError::NoStart };
-    let Some(_) = starts.first() else { return Err(none()) };
-    let mut found = search(&mut thin, &starts, &look);
-    let evaluations = starts.len() + starts.len().min(AGAIN) + found.evaluations;
     let minima = &mut found.minima;
     let others = distinct(&thin, minima, stride as f64);
     if minima.is_empty() {
@@ -327,8 +324,8 @@ pub fn fit<'a>(
         branch: polished.branch,
         branch_resolved: polished.resolved,
         others,
-        starts: starts.len(),
-        evaluations: evaluations + polished.evaluations,
+        starts: found.starts,
+        evaluations: found.evaluations + polished.evaluations,
         look,
         objective: full,
     })
@@ -447,12 +444,12 @@ fn polish(full: &mut Objective<'_>, x: &DVector<f64>) -> Result<Polished, FitErr
 /// infinite, and a straight line through it says nothing.
 fn leave_out_jumps(objective: &mut Objective<'_>, found: &Minimum) {
     let stretch = &found.at.prediction.stretch;
-    let inside = &found.at.prediction.inside;
+    let beyond = &found.at.prediction.beyond;
     let mut first = 0;
     for segment in &objective.curve.segments {
         let end = first + segment.force.len();
         for i in first..end {
-            if !inside[i] {
+            if beyond[i] != 0.0 {
                 objective.used[i] = false;
             }
             if i > first && stretch[i] != stretch[i - 1] {

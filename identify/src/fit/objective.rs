@@ -8,6 +8,7 @@
 //! logarithm, for positive quantities). `w ≥ 1` is by how much the variance of the data exceeds `σ²`, as
 //! their residuals tell: it weakens what the data say, and not what was known beforehand.
 
+use super::guide::{self, Guide};
 use crate::attend::Attended;
 use crate::data::Curve;
 use crate::error::ModelError;
@@ -90,6 +91,8 @@ pub struct Objective<'a> {
     pub bounds: Vec<(f64, f64)>,
     /// Soft-L1 in place of squares.
     pub robust: bool,
+    /// Jumps that lead a search.
+    pub guide: Option<Guide>,
 }
 
 /// The objective at a place.
@@ -176,12 +179,28 @@ impl Objective<'_> {
         x: &DVector<f64>,
         (branch, resolution): (LeverBranch, Resolution),
     ) -> Evaluation {
-        let p = self.parameters(x);
-        let weight = 1.0 / self.noise;
-        let prediction = self.model.predict(self.curve, &branch, &p, &self.free, weight);
-        let mut evaluation = self.sum(prediction);
+        let mut evaluation = self.of_data(&branch, &self.parameters(x));
         self.add_priors(x, &mut evaluation);
         evaluation.branch = Some((branch, resolution));
+        evaluation
+    }
+
+    /// What the data say of parameters, on their branch.
+    pub fn of_data(&self, branch: &LeverBranch, p: &Parameters) -> Evaluation {
+        let Some(guide) = &self.guide else {
+            let weight = 1.0 / self.noise;
+            return self.sum(self.model.predict(self.curve, branch, p, &self.free, weight));
+        };
+        let guided = guide.pair(self.curve, branch, p, &self.free, self.noise);
+        let prediction = self.model.predict_on(self.curve, branch, p, &self.free, guided.way);
+        let mut evaluation = self.sum(prediction);
+        evaluation.cost += guided.cost;
+        for (residual, by_key) in guided.folds {
+            evaluation.cost += residual * residual;
+            let row = DVector::from_vec(by_key);
+            evaluation.gradient += &row * residual;
+            evaluation.normal += &row * row.transpose();
+        }
         evaluation
     }
 
@@ -192,15 +211,28 @@ impl Objective<'_> {
         let mut normal = DMatrix::zeros(n, n);
         let mut gradient = DVector::zeros(n);
         let mut chi2 = 0.0;
+        let contact = self.free.iter().position(|key| *key == Key::Contact);
         let measured = self.curve.segments.iter().flat_map(|s| &s.force);
         for (i, y) in measured.enumerate() {
             if !self.used[i] {
                 continue;
             }
-            let r = weight * (prediction.force[i] - y);
+            let row = &prediction.by_key[i * n..(i + 1) * n];
+            let mut off = prediction.force[i] - y;
+            let mut weight = weight;
+            if let Some(guide) = &self.guide {
+                let slope = contact.map_or(0.0, |k| row[k]);
+                weight = guide.weight(self.noise, slope);
+                if prediction.beyond[i] != 0.0 {
+                    // as at the end of the stretch: what moves it is the residual of the fold
+                    off -= self.model.nominal_spring_constant * prediction.beyond[i];
+                    chi2 += (weight * off).powi(2).min(guide::UNREACHED * guide::UNREACHED);
+                    continue;
+                }
+            }
+            let r = weight * off;
             let (rho, w) = self.loss(r);
             chi2 += rho;
-            let row = &prediction.by_key[i * n..(i + 1) * n];
             let w = w / self.widened;
             let w2 = w * weight * weight;
             for a in 0..n {

@@ -4,6 +4,7 @@
 //! shifted (contact point, baseline) to lie on the data is a fit of four numbers that needs no further
 //! branch.
 
+use super::buckling::led_elements;
 use super::objective::Objective;
 use crate::attend::Stage;
 use crate::data::{Curve, Direction, Segment};
@@ -173,7 +174,87 @@ pub fn grid(objective: &Objective<'_>, look: &Look) -> Vec<Start> {
     starts
 }
 
-/// Stretches and shifts a branch to lie on the data.
+/// A grid of shells that buckle.
+#[derive(Debug)]
+pub(super) struct Buckling {
+    /// Bending stiffnesses `k̂_b`.
+    bending: &'static [f64],
+    /// Adhesion, of the stretching modulus.
+    adhesion: &'static [f64],
+    /// Film lengths `δ̂_A`.
+    film: &'static [f64],
+}
+
+/// A first grid, and one that lies between its points.
+pub(super) const BUCKLING: [Buckling; 2] = [
+    Buckling {
+        bending: &[1e-5, 4e-5, 1.6e-4],
+        adhesion: &[6e-4, 1.5e-3, 4e-3, 1e-2],
+        film: &[0.025, 0.045],
+    },
+    Buckling {
+        bending: &[1e-5, 2e-5, 3e-5, 5.5e-5],
+        adhesion: &[9e-4, 1.5e-3, 2.7e-3, 4.5e-3],
+        film: &[0.02, 0.032, 0.045],
+    },
+];
+/// Pull-off force of hard shells in `2π R0 w0`, of which it is 0.90 to 0.95.
+const PULL_OFF: f64 = 0.93;
+
+/// A grid for shells that buckle, the best first. Jumps hide the slope of the first contact, and the scale of the
+/// force is not read off it: the pull-off says the adhesion, and each share of it in the stretching modulus is a
+/// shell of its own scale, which stays.
+pub(super) fn buckling_grid(
+    objective: &mut Objective<'_>,
+    look: &Look,
+    grid: &Buckling,
+) -> Vec<Start> {
+    let base = objective.base;
+    let radius = base[Key::Radius];
+    let contacts = f64::from(objective.model.contacts);
+    let given = |key: Key| (!objective.free.contains(&key)).then_some(base[key]);
+    let pull = look.pull_off / (2.0 * std::f64::consts::PI * PULL_OFF * radius);
+    let adhesion = given(Key::Adhesion).unwrap_or(pull);
+    let moduli: Vec<f64> = match given(Key::Chi) {
+        Some(chi) => vec![chi],
+        None => grid.adhesion.iter().map(|share| adhesion / share).collect(),
+    };
+    let films: Vec<f64> = match given(Key::Film) {
+        Some(film) => vec![film],
+        None => grid.film.iter().map(|film| film * radius).collect(),
+    };
+    let mut shells = Vec::new();
+    for &chi in &moduli {
+        match given(Key::Bending) {
+            Some(bending) => shells.push((chi, bending)),
+            None => {
+                let all = grid.bending.iter().map(|b| (chi, b * chi * radius * radius));
+                shells.extend(all);
+            }
+        }
+    }
+    let mut starts = Vec::new();
+    for (row, &(chi, bending)) in shells.iter().enumerate() {
+        for (column, &film) in films.iter().enumerate() {
+            let done = row * films.len() + column;
+            objective.attended.tell(Stage::Starts, done, shells.len() * films.len());
+            if objective.attended.is_stopped() {
+                break;
+            }
+            let mut p = base;
+            (p[Key::Chi], p[Key::Bending]) = (chi, bending);
+            (p[Key::Adhesion], p[Key::Film]) = (adhesion, film);
+            (p[Key::Offset], p[Key::Tilt]) = (look.offset, look.tilt);
+            p[Key::Contact] = look.onset - contacts * film;
+            objective.model.effort.elements = led_elements(&p);
+            starts.extend(lay(objective, p));
+        }
+    }
+    starts.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    starts
+}
+
+/// Stretches and shifts a branch to lie on the data; only shifts it where jumps lead.
 fn lay(objective: &Objective<'_>, mut p: Parameters) -> Option<Start> {
     let keys = [Key::Chi, Key::Contact, Key::Offset, Key::Tilt];
     let attended = objective.attended;
@@ -184,13 +265,11 @@ fn lay(objective: &Objective<'_>, mut p: Parameters) -> Option<Start> {
     own.derived.clear();
     own.bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); keys.len()];
     own.robust = true;
-    let free: Vec<usize> = (0..keys.len()).filter(|&k| objective.free.contains(&keys[k])).collect();
+    let stretches = objective.guide.is_none();
+    let free = (0..keys.len()).filter(|&k| objective.free.contains(&keys[k]));
+    let free: Vec<usize> = free.filter(|&k| stretches || keys[k] != Key::Chi).collect();
     let mut damping = 1e-2;
-    let evaluate = |p: &Parameters| {
-        let branch = branch.stretched(p)?;
-        let prediction = own.model.predict(own.curve, &branch, p, &keys, 1.0 / own.noise);
-        Some(own.sum(prediction))
-    };
+    let evaluate = |p: &Parameters| Some(own.of_data(&branch.stretched(p)?, p));
     let mut at = evaluate(&p)?;
     for _ in 0..25 {
         let m = free.len();

@@ -76,7 +76,8 @@ impl Known {
 pub struct Normal(pub u64);
 
 impl Normal {
-    fn uniform(&mut self) -> f64 {
+    /// The next number between 0 and 1.
+    pub fn uniform(&mut self) -> f64 {
         // SplitMix64
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

@@ -30,40 +30,50 @@ pub(crate) struct Specimen {
     noise: f64,
 }
 
-/// A hard shell past its knee.
+/// The first open curve: a hard shell past its knee.
 pub(crate) fn hard() -> Specimen {
     Specimen {
         law: LawName::Hooke,
-        truth: parameters([37.4, 2.01129e-15, 2e-4, 20e-9, 1.62e-6, 1.2, 7.8e-6]),
-        from: 8.5e-6,
-        to: 7.4e-6,
+        truth: measured(
+            [37.4, 2.01129e-15, 2e-4, 20e-9, 1.62e-6, 1.2, 7.8030095e-6],
+            [-3.1e-9, 0.9e-3],
+        ),
+        from: 8.6088e-6,
+        to: 7.1178e-6,
         noise: 1.5e-10,
     }
 }
 
-/// A soft one at its upturn.
+/// The second: a soft one at its upturn.
 pub(crate) fn soft() -> Specimen {
     Specimen {
         law: LawName::MooneyRivlin,
-        truth: parameters([0.06, 4e-16, 2e-4, 40e-9, 1.4e-6, 0.06, 12.2588772e-6]),
-        from: 13.1e-6,
-        to: 11.2e-6,
+        truth: measured(
+            [0.06, 4e-16, 2e-4, 40e-9, 1.4e-6, 0.06, 12.2588772e-6],
+            [0.42e-9, 0.11e-3],
+        ),
+        from: 13.1598e-6,
+        to: 11.2149e-6,
         noise: 5e-11,
     }
+}
+
+fn measured(shell: [f64; 7], [offset, tilt]: [f64; 2]) -> Parameters {
+    let mut p = parameters(shell);
+    (p[Key::Offset], p[Key::Tilt]) = (offset, tilt);
+    p
 }
 
 impl Specimen {
     /// A measurement of it: the curve, and what the laboratory knows.
     pub(crate) fn measure(&self, seed: u64) -> (Curve, Setup) {
-        let mut truth = self.truth;
-        truth[Key::Offset] = -2e-9;
-        truth[Key::Tilt] = 3e-4;
+        let truth = self.truth;
         let mut normal = Normal(seed);
         // what the microscope and the calibration say has errors of its own
         let radius = truth[Key::Radius] * (0.03 * normal.next()).exp();
         let optical = Prior { key: Key::Radius, value: radius, sd: 0.03 * radius };
         let nominal = truth[Key::SpringConstant] * (0.1 * normal.next()).exp();
-        let mut curve = heights(self.from, self.to, 200);
+        let mut curve = heights(self.from, self.to, 600);
         let model = Model {
             law: self.law,
             contacts: 2,
