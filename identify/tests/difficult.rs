@@ -1,6 +1,6 @@
 //! Curves and parameters that are hard on a fit: a shell that buckles, shells beyond reason, and people who do not
 //! wait.
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
 #[path = "common/buckling.rs"]
 mod buckling;

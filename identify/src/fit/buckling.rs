@@ -8,6 +8,10 @@
 //! | after [`PROBE`] evaluations a start costs more than [`FAR_BEHIND`] times the best | it goes no farther |
 //! | a descent ends within [`NEAR`] | the noise shrinks, in [`STEPS`] |
 //! | the end does not describe the curve | the next start |
+//! | no start of the first grid leads there | a second grid between its points, the radius kept as it was seen, samples that may be off in travel too |
+//!
+//! Starts part from the truth where the branch of the shells between them does not lead to the buckled stretch: it
+//! passes on to unstable states instead, and the stretch lies on a branch of its own.
 
 use super::descent::{Minimum, descend, descend_from};
 use super::guide::Guide;
