@@ -48,7 +48,7 @@ impl Serialize for Document<'_> {
 }
 
 /// What was examined.
-pub(super) struct StabilityOf<'a>(pub(super) &'a StabilityRecord);
+pub(in crate::record) struct StabilityOf<'a>(pub(in crate::record) &'a StabilityRecord);
 
 impl Serialize for StabilityOf<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

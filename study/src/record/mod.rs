@@ -35,5 +35,7 @@ pub use result::{
 };
 pub use result::{StabilityRecord, TraceResult};
 pub use summary::summary;
-pub use sweep::{CaseRecord, Status, SweepResult, events_table, sweep_json, sweep_summary};
+pub use sweep::{
+    CaseRecord, LossRecord, Status, SweepResult, events_table, sweep_json, sweep_summary,
+};
 pub use table::{branch_csv, modes_csv};

@@ -1,6 +1,7 @@
 //! The shell from pole to pole between two plates.
 
 use super::contact::{SAMPLES, drawn, event_record, loaded_path, no_start, path, row};
+use super::family::Wanted;
 use super::form::{StabilityColumns, certified};
 use super::resolution::{Resolved, height};
 use super::stability::Stability;
@@ -122,13 +123,15 @@ fn build(case: &TwoPlatesCase) -> Result<TwoPlatesProblem, shell_contact::Parame
 pub(super) fn run(
     case: &ResolvedCase,
     plates: &TwoPlatesCase,
+    wanted: Wanted,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
-    visit(case, plates, Trace { case, observer })?
+    visit(case, plates, Trace { case, wanted, observer })?
 }
 
 struct Trace<'t, 'o> {
     case: &'t ResolvedCase,
+    wanted: Wanted,
     observer: &'t mut Observer<'o>,
 }
 
@@ -136,7 +139,7 @@ impl WithPlates for Trace<'_, '_> {
     type Output = Result<TraceResult, RunError>;
 
     fn with<P: BetweenPlates>(self, problem: &P, x: &[f64], p: &[f64]) -> Self::Output {
-        let Trace { case, observer } = self;
+        let Trace { case, wanted, observer } = self;
         let clock = Instant::now();
         let name = &problem.parameters()[0].name;
         let branch = Tracer::new(problem, name, x, p, settings(case, name))
@@ -147,8 +150,12 @@ impl WithPlates for Trace<'_, '_> {
         let stability = Stability::of_whole(case, problem, &mut traced, observer);
         let seconds = clock.elapsed().as_secs_f64();
         let resolved = resolved(problem, &traced.branch);
-        let title = resolved.titled(&case.name);
-        let pictures = pictures(title, problem, &traced, &stability);
+        let pictures = match wanted {
+            Wanted::Nothing => Pictures::default(),
+            Wanted::Pictures | Wanted::States => {
+                pictures(resolved.titled(&case.name), problem, &traced, &stability)
+            }
+        };
         let resolution = resolved.record();
         Ok(TraceResult { pictures, resolution, ..result(case, &traced, &stability, seconds) })
     }

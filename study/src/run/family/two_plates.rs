@@ -22,10 +22,10 @@ impl Family for TwoPlatesCase {
     fn trace(
         &self,
         case: &ResolvedCase,
-        _: Wanted,
+        wanted: Wanted,
         observer: &mut Observer<'_>,
     ) -> Result<TraceResult, RunError> {
-        two_plates::run(case, self, observer)
+        two_plates::run(case, self, wanted, observer)
     }
 
     fn diagram(
