@@ -193,7 +193,8 @@ impl Bench {
                         let (sigma, z) = (profile.sigma, profile.z);
                         let outline = Outline { sigma, z, pressure: profile.disjoining_pressure };
                         let outline = outline.thinned(OUTLINE);
-                        result.pictures.states = vec![State { point: at, plate: point.p, outline }];
+                        result.pictures.states =
+                            vec![State { point: at, plate: point.p, plate_below: None, outline }];
                     }
                 }
                 result

@@ -183,7 +183,7 @@ impl Kind {
 
 fn state(state: &record::State) -> State {
     let record::Outline { sigma, z, pressure } = state.outline.clone();
-    State { point: state.point, plate: state.plate, sigma, z, pressure }
+    State { point: state.point, plate: state.plate, below: state.plate_below, sigma, z, pressure }
 }
 
 fn pair(name: &str, label: &str) -> (String, String) {
