@@ -63,7 +63,7 @@ const KNOWN: f64 = 4.0;
 
 /// Traces the branch of mirror images that begins at the sphere between plates at `start`, as
 /// [`Tracer`] would trace `problem`: with zeros and extrema of the force, to where `settings` say.
-/// `None` where the two plates differ, or a support tells up from down. With `scan`, modes with waves are
+/// `None` where the two plates differ, a support tells up from down, or the start is refused. With `scan`, modes with waves are
 /// counted and located too.
 ///
 /// # Errors
@@ -76,6 +76,9 @@ pub fn trace_symmetric<P: WholeShell>(
     observer: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Option<Result<SymmetricBranch, TraceError>> {
     let MirrorHalf { shell, device } = problem.mirror_half()?;
+    // what the whole refuses at the start, as plates that cross, it says better itself
+    let rest = problem.joined_images(&shell.initial_state(), start, start);
+    problem.residual(&rest, &problem.parameters_at(start), &mut vec![0.0; problem.dim()]).ok()?;
     let settings = device_settings(device, settings);
     let traced = match device {
         Device::Grip => {

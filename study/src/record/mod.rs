@@ -20,6 +20,7 @@ pub mod view;
 mod tests;
 
 pub(crate) use column::{PLATES, RING};
+pub(crate) use cycle::MODES;
 pub use cycle::{CycleResult, FoldRecord, JumpRecord, PathModes, PathRow, ReportedCycle};
 pub use cycle::{StretchRecord, Way, cycle_json, cycle_summary, cycle_table};
 pub use diagram::{BranchOrigin, BranchRecord, DiagramResult, NearRecord, Symmetry};

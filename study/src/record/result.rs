@@ -111,6 +111,16 @@ impl Table {
         self.rows.iter().map(number).collect()
     }
 
+    /// The same with more columns, and their cells row by row.
+    pub(crate) fn beside(&self, columns: &[&str], cells: Vec<Vec<Cell>>) -> Table {
+        let names = columns.iter().map(ToString::to_string).collect();
+        let mut out = Table { rows: Vec::new(), ..self.clone() }.and(names);
+        for (row, more) in self.rows.iter().zip(cells) {
+            out.push(row.iter().cloned().chain(more).collect());
+        }
+        out
+    }
+
     /// The same without the rows that have this word in a column.
     pub(crate) fn without(&self, column: &str, word: &str) -> Table {
         let at = self.columns.iter().position(|name| name == column);

@@ -169,10 +169,11 @@ impl Travelled<'_> {
         counted: &mut dyn FnMut(&CyclePoint) -> Option<PathModes>,
         shape: &dyn Fn(&CyclePoint) -> Option<Shape>,
     ) -> CycleResult {
-        let Travelled { case, traced, cycle, balance, .. } = self;
+        let Travelled { case, traced, cycle, balance, mut reported, .. } = self;
         let branch = &traced.branch;
         let row = |(step, point): (usize, &CyclePoint)| path_row(step, point, counted(point));
         let points: Vec<PathRow> = cycle.points.iter().enumerate().map(row).collect();
+        ways::count(&mut reported, cycle, &points);
         let examined = match (case.stability, self.both_parities) {
             (StabilityCase::Full { .. }, _) => Examined::AxisymmetricAndOthers,
             (_, true) => Examined::AxisymmetricBothParities,
@@ -205,7 +206,7 @@ impl Travelled<'_> {
             newton_iterations: cycle.newton_iterations + branch.statistics.newton_iterations,
             seconds: clock.elapsed().as_secs_f64(),
             pictures: pictures(&case.name, traced, (cycle, &points), examined, shape),
-            reported: self.reported,
+            reported,
             branch: self.branch,
             points,
         }

@@ -2,7 +2,7 @@
 
 use super::states;
 use super::two_plates::BetweenPlates;
-use crate::record::{ContactRow, ReportedCycle, Table, Way};
+use crate::record::{ContactRow, MODES, PathRow, ReportedCycle, Table, Way};
 use continuation::Problem;
 use shell_contact::device::{Cycle, CyclePoint};
 use shell_contact::{ContactBranch, ContactProblem, Device, Observation};
@@ -101,7 +101,19 @@ fn way(
     Way { label, table, jumps, states: Vec::new() }
 }
 
-/// One state of the path, which is stable, in the columns of a branch.
+/// Puts what the states of the path are unstable to beside those of its ways.
+pub(super) fn count(reported: &mut ReportedCycle, cycle: &Cycle, path: &[PathRow]) {
+    if path.iter().all(|row| row.modes.is_none()) {
+        return;
+    }
+    for (way, span) in reported.ways.iter_mut().zip(spans(cycle)) {
+        let cells = path[span].iter().map(|row| row.modes.map(|modes| modes.cells().to_vec()));
+        let cells = cells.map(Option::unwrap_or_default).collect();
+        way.table = way.table.beside(&MODES, cells);
+    }
+}
+
+/// One state of the path, in the columns of a branch: stable to the modes that the path follows.
 fn row(
     traced: &ContactBranch,
     at: usize,
