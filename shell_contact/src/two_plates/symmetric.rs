@@ -126,7 +126,7 @@ impl TwoPlatesProblem {
             surface_tension: g.surface_tension,
             gas_exponent: g.gas_exponent,
         };
-        let film = self.potentials.0.clone();
+        let film = self.potentials.0;
         ContactProblem::with_potential(self.shell(), &groups, self.mesh().clone(), film).ok()
     }
 }
