@@ -105,6 +105,15 @@ fn the_branch_of_the_half_is_that_of_the_whole() {
         }
     }
     assert!(forks >= 4, "{forks}");
+    // the null vector of a fold, up to its sign
+    for (own, other) in found.branch.events.iter().zip(&direct.events) {
+        if own.kind != EventKind::Fold {
+            continue;
+        }
+        let [a, b] = [own, other].map(|event| event.critical_modes()[0].re.clone());
+        let along: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
+        assert!((along.abs() - 1.0).abs() < 1e-4, "{along}");
+    }
     // modes with waves are those of the whole too
     let mut modes = WholeModes::new(problem.mesh());
     assert_eq!(found.waves.points.len(), found.branch.points.len());
@@ -182,6 +191,29 @@ fn a_soft_spring_passes_the_fold_beside_its_pitchfork() {
             let taken = 2.0 * stiffness * (point.observables[z0] - base);
             assert!((force - taken).abs() < 1e-8, "{force} {taken}");
         }
+    }
+}
+
+/// Whoever ends the work keeps the points that there are, with their own counts.
+#[test]
+fn what_is_interrupted_keeps_its_points() {
+    let problem = whole(40, Law::Hooke, FIG12);
+    let all = traced(&problem, (1.15, 0.9), None).branch.points.len();
+    for stop in [10, all + 3] {
+        let mut told = 0;
+        let mut observer = |_: &_| {
+            told += 1;
+            if told < stop { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        };
+        let scan = Some(ScanSettings::default());
+        let found =
+            trace_symmetric(&problem, 1.15, settings(0.9), scan, &mut observer).unwrap().unwrap();
+        assert_eq!(found.branch.stopped.reason, StopReason::Interrupted);
+        assert!(found.branch.points.len() >= all.min(10), "{}", found.branch.points.len());
+        if stop > all {
+            assert_eq!(found.branch.points.len(), all);
+        }
+        assert!(found.branch.points.iter().all(|point| point.unstable.is_some()));
     }
 }
 

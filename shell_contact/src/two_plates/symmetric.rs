@@ -22,8 +22,8 @@ use crate::params::Dimensionless;
 use crate::trace::force_watches;
 use continuation::linalg::Bordered;
 use continuation::{
-    Branch, Criticality, Crossing, Detail, Direction, Doubt, EvalError, Event, EventKind, Point,
-    Problem, Progress, Settings, Shape, Stop, StopReason, TraceError, Tracer,
+    Branch, Criticality, Crossing, Detail, Direction, Doubt, Eigenvector, EvalError, Event,
+    EventKind, Point, Problem, Progress, Settings, Shape, Stop, StopReason, TraceError, Tracer,
 };
 use std::ops::ControlFlow;
 
@@ -196,7 +196,23 @@ impl<P: WholeShell> Lift<'_, P> {
             }),
             None => ControlFlow::Continue(()),
         };
-        let scanned = scan_branch(self.shell, &half, &settings, &mut told)?;
+        let mut stopped = half.stopped.clone();
+        let counted = match stopped.reason {
+            StopReason::Interrupted => None,
+            _ => Some(scan_branch(self.shell, &half, &settings, &mut told)?),
+        };
+        let scanned = match counted {
+            Some(scanned) if scanned.points.len() == points.len() => scanned,
+            // somebody ended the work: the branch keeps its points, with what they count themselves
+            counted => {
+                if counted.is_some() {
+                    let detail = "interrupted while modes were counted".to_owned();
+                    stopped = Stop { reason: StopReason::Interrupted, detail };
+                }
+                let own = ScanSettings { max_n: 0, ..settings };
+                scan_branch(self.shell, &half, &own, &mut |_| ControlFlow::Continue(()))?
+            }
+        };
         let mut modes = AsymmetricModes::new(self.shell.mesh());
         let mut out = Branch {
             parameters: self.problem.parameters_at(half.parameters[0]),
@@ -205,19 +221,14 @@ impl<P: WholeShell> Lift<'_, P> {
             events: Vec::with_capacity(half.events.len()),
             doubts: half.doubts.clone(),
             began: half.began.clone(),
-            stopped: half.stopped.clone(),
+            stopped,
             statistics: half.statistics,
             parameter: half.parameter.clone(),
         };
         let mut waves = Scanned::default();
         let mut found = scanned.events.iter().peekable();
         for (index, point) in points.iter().enumerate() {
-            let Some(own) = scanned.points.get(index) else {
-                // somebody ended the work: what was counted is the result
-                let detail = "interrupted while modes were counted".to_owned();
-                out.stopped = Stop { reason: StopReason::Interrupted, detail };
-                break;
-            };
+            let Some(own) = scanned.points.get(index) else { break };
             let (u, z0) = (&point.u[..self.shell.dim()], plate(point));
             let x = self.state(u, z0, point.p);
             let event = point.event.map(|event| {
@@ -227,7 +238,7 @@ impl<P: WholeShell> Lift<'_, P> {
                     point: out.points.len(),
                     unstable_before: and(event.unstable_before),
                     unstable_after: and(event.unstable_after),
-                    eigenvectors: Vec::new(),
+                    eigenvectors: event.eigenvectors.iter().map(|v| self.eigenvector(v)).collect(),
                     ..event.clone()
                 });
                 out.events.len() - 1
@@ -318,6 +329,19 @@ impl<P: WholeShell> Lift<'_, P> {
             waves = Scanned::default();
         }
         Ok(SymmetricBranch { branch: out, waves })
+    }
+
+    /// A critical vector of the half as one of the whole, of Euclidean length 1.
+    fn eigenvector(&self, half: &Eigenvector) -> Eigenvector {
+        let lifted = |v: &[f64]| -> Vec<f64> {
+            // states are lifted by a linear map, the plate's height among them
+            let (u, plate) = v.split_at(self.shell.dim().min(v.len()));
+            let whole = self.state(u, plate.first().copied().unwrap_or(0.0), 0.0);
+            let length = whole.iter().map(|x| x * x).sum::<f64>().sqrt();
+            whole.into_iter().map(|x| x / length).collect()
+        };
+        let im = if half.im.is_empty() { Vec::new() } else { lifted(&half.im) };
+        Eigenvector { re: lifted(&half.re), im, ..half.clone() }
     }
 
     fn residual(&self, x: &[f64], parameter: f64) -> Result<f64, EvalError> {
