@@ -341,7 +341,7 @@ impl<P: WholeShell> Lift<'_, P> {
             whole.into_iter().map(|x| x / length).collect()
         };
         let im = if half.im.is_empty() { Vec::new() } else { lifted(&half.im) };
-        Eigenvector { re: lifted(&half.re), im, ..half.clone() }
+        Eigenvector { re: lifted(&half.re), im }
     }
 
     fn residual(&self, x: &[f64], parameter: f64) -> Result<f64, EvalError> {
