@@ -77,10 +77,6 @@ impl Advised for RunError {
     fn advised(&self) -> String {
         match self {
             RunError::Device { .. } => format!("{self}, or say --set device.kind=grip"),
-            RunError::MirrorOnly { run, .. } => {
-                let command = run.trim_start_matches("a ");
-                self.to_string().replacen(run, &format!("arclen {command}"), 1)
-            }
             _ => self.to_string(),
         }
     }

@@ -239,6 +239,47 @@ fn problems_of_the_catalogue_can_be_swept() {
 }
 
 #[test]
+fn a_sweep_counts_waves_where_it_is_asked_to_and_says_what_it_counted() {
+    let vary = "[[vary]]\nkey = \"dimensionless.adhesion\"\nvalues = [2e-6, 2e-3]\n";
+    let text_of = |scan: &str| format!("case = \"fig12\"\nmesh.elements = 60\n{scan}{vary}");
+    let place = place(&text_of(""));
+    fs::write(place.path().join("in/full.toml"), text_of("stability.scan = \"full\"\n")).unwrap();
+    let run = |file: &str| {
+        let output = arclen(place.path(), &["sweep", &format!("in/{file}.toml"), "--out", file]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        let at = place.path().join(file);
+        let read = |name: &str| fs::read_to_string(at.join(name)).unwrap();
+        (text(&output.stdout), json(&at), read("curves.csv"), read("events.csv"))
+    };
+    let (own_summary, own, own_curves, own_events) = run("sweep");
+    let (full_summary, full, full_curves, full_events) = run("full");
+    assert!(own_summary.contains("stability: against axisymmetric mirror images only"));
+    assert!(full_summary.contains("stability: with and without symmetry"), "{full_summary}");
+    assert!(full_summary.contains("with waves around the axis in 1 case, without in 1"));
+    for case in 0..2 {
+        assert_eq!(own["cases"][case]["stability"]["scan"], "axisymmetric");
+        assert!(own["cases"][case].get("first_loss").is_none());
+        assert_eq!(full["cases"][case]["stability"]["scan"], "full");
+        // what is counted beside the branch does not change what it is
+        assert_eq!(own["cases"][case]["class"], full["cases"][case]["class"]);
+    }
+    // four waves first with a weak film; with a strong one the mirror image goes first, at the fold
+    let loss = |case: usize, name: &str| full["cases"][case]["first_loss"][name].clone();
+    assert_eq!(
+        (loss(0, "n"), loss(1, "n"), loss(1, "parity")),
+        (4.into(), 0.into(), "antisymmetric".into())
+    );
+    assert!((loss(0, "z0").as_f64().unwrap() - 0.78323).abs() < 1e-4);
+    let columns = "unstable_antisymmetric,unstable_modes,first_n,stable";
+    assert!(full_curves.lines().next().unwrap().contains(columns));
+    assert!(!own_curves.contains(columns) && !own_events.contains("symmetry-breaking"));
+    let header = full_events.lines().next().unwrap();
+    assert!(header.ends_with("n,parity,modes_before,modes_after"), "{header}");
+    let waves = full_events.lines().filter(|line| line.ends_with(",2,symmetric,0,1"));
+    assert_eq!(waves.count(), 1, "{full_events}");
+}
+
+#[test]
 fn input_errors_exit_with_2_and_create_nothing() {
     let place = place(&SWEEP.replace("values", "vlaues"));
     for (arguments, part) in [

@@ -132,6 +132,33 @@ fn a_cycle_leaves_the_symmetric_branch_and_comes_back() {
     for file in ["loop.svg", "jump-4.svg", "report.html", "branch.csv"] {
         assert!(out.join(file).exists(), "{file}");
     }
+    // the report has both poles and both plates, and says what is unstable to waves
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    let start = page.find("id=\"data\">").unwrap() + 10;
+    let end = start + page[start..].find("</script>").unwrap();
+    let data: Value = serde_json::from_str(&page[start..end]).unwrap();
+    assert!(
+        data["subtitle"].as_str().unwrap().contains("of the complete branch against axisymmetric")
+    );
+    for curve in data["curves"].as_array().unwrap() {
+        let states = curve["states"].as_array().unwrap();
+        assert!(states.len() > 20);
+        for state in states {
+            let (plate, below) =
+                (state["plate"].as_f64().unwrap(), state["below"].as_f64().unwrap());
+            assert!((plate + below).abs() < 1e-9);
+            let z = state["z"].as_array().unwrap();
+            let ends = [&z[0], &z[z.len() - 1]].map(|z| z.as_f64().unwrap());
+            assert!(below < ends[1] && ends[1] < ends[0] && ends[0] < plate, "{ends:?}");
+        }
+    }
+    let unstable = |curve: usize| -> usize {
+        let counts = data["curves"][curve]["unstable"].as_array().unwrap().iter();
+        counts.filter(|n| n.as_i64().unwrap() > 0).count()
+    };
+    let counted = cycle["stability"]["unstable_states"].as_u64().unwrap() as usize;
+    // the turn stands on both ways
+    assert_eq!(unstable(1) + unstable(2), counted + 1);
 }
 
 /// Where no cycle can be it is said why and what to do.
@@ -242,10 +269,70 @@ fn bad_plates_are_named_with_what_to_do() {
     let error = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(error.contains("plate.bottom") && error.contains("equator = \"held\""), "{error}");
-    let output = arclen(place.path(), &["map", "two-plates", "--over", "film"]);
-    let error = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{error}");
-    assert!(error.contains("mirror-symmetric states only"), "{error}");
+    for (key, words) in [
+        ("film", &["no such parameter", "plate.top.film, plate.bottom.adhesion"][..]),
+        ("z0", &["is the parameter of the branch"]),
+        ("plate.top.flim", &["did you mean plate.top.film?"]),
+    ] {
+        let output = arclen(place.path(), &["map", "two-plates", "--over", key]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(words.iter().all(|part| error.contains(part)), "{error}");
+    }
+}
+
+/// Over what leaves both plates alike the folds are those of half the shell, and the pitchforks have curves
+/// besides; a film of one plate alone moves folds too.
+#[test]
+fn folds_of_the_whole_shell_have_curves_in_two_parameters() {
+    let place = tempfile::tempdir().unwrap();
+    let map = |case: &str, key: &str, out: &str, sets: &[&str]| {
+        let words = ["map", case, "--over", key, "--elements", "40", "--out", out, "-q"];
+        let output = arclen(place.path(), &[&words[..], sets].concat());
+        assert!(output.status.code().is_some_and(|code| code != 2), "{output:?}");
+        json(&place.path().join(out).join("map.json"))
+    };
+    let range = ["--set", "map.from=2e-3", "--set", "map.to=4e-3", "--set", "path.end=0.815"];
+    let whole = map("two-plates", "pressure", "whole", &range);
+    let half = map("fig12", "pressure", "half", &range);
+    let of = |map: &Value, kind: &str| -> Vec<String> {
+        let curves = map["curves"].as_array().unwrap().iter();
+        let own = curves.filter(|curve| curve["kind"] == kind);
+        own.map(|curve| curve["csv"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(of(&whole, "fold").len(), 2);
+    assert_eq!(of(&whole, "fold"), of(&half, "fold"));
+    for file in of(&half, "fold") {
+        let ends = |out: &str| -> Vec<[f64; 3]> {
+            let at = |name: &str| column(&place.path().join(out).join(&file), name);
+            let (z0, pressure, force) = (at("z0"), at("pressure"), at("force"));
+            let last = z0.len() - 1;
+            let mut ends = [0, last].map(|k| [pressure[k], z0[k], force[k]]).to_vec();
+            ends.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            ends
+        };
+        for (a, b) in ends("whole").iter().zip(ends("half")) {
+            for (a, b) in a.iter().zip(b) {
+                assert!((a - b).abs() < 1e-8, "{file}: {a} {b}");
+            }
+        }
+    }
+    // where the bubble leaves one plate, at the flat fold, behind the other one, where one dimple grows
+    assert!(of(&whole, "branch-point").len() >= 4 && of(&half, "branch-point").is_empty());
+    let one = map(
+        "two-plates",
+        "plate.top.film",
+        "one",
+        &["--set", "map.from=0.032", "--set", "map.to=0.035", "--set", "path.end=0.815"],
+    );
+    let folds = of(&one, "fold");
+    assert!(!folds.is_empty());
+    let at = |name: &str| column(&place.path().join("one").join(&folds[0]), name);
+    let (z0, film) = (at("z0"), at("film_top"));
+    let apart = z0.iter().zip(&film).filter(|(_, film)| (*film - 0.0333333333).abs() > 1e-4);
+    assert!(apart.clone().count() > 2);
+    let unlike = at("pole_top").iter().zip(at("pole_bottom")).any(|(a, b)| (a - b).abs() > 1e-4);
+    assert!(unlike, "of unequal plates no state is a mirror image");
 }
 
 /// The symmetric branch of Fig. 12 with the asymmetric ones: the bubble on one plate, one dimple

@@ -241,7 +241,9 @@ impl Explorer {
             "branch-physical.csv" => physical_table(&traced.case, table)
                 .and_then(|table| branch_csv(&table).ok())
                 .map(|csv| Answer::of("text/csv", csv)),
-            "events.json" => events_json(&traced.result).ok().map(|text| Answer::of(JSON, text)),
+            "events.json" => {
+                events_json(&traced.case, &traced.result).ok().map(|text| Answer::of(JSON, text))
+            }
             _ => match physical {
                 true => pictures::draw_physical(&traced.case, &traced.result),
                 false => pictures::draw_all(&traced.case, &traced.result.pictures),

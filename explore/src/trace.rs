@@ -165,7 +165,7 @@ impl Bench {
 
     /// Without a look at modes that break symmetries, and with one state.
     fn plain(&self, set: &[String], along: f64, coarse: bool, clock: Instant) -> Outcome {
-        let LoadedCase { mut case, notes } = self.load(set)?;
+        let LoadedCase { mut case, notes, .. } = self.load(set)?;
         case.stability = StabilityCase::Axisymmetric;
         if coarse {
             coarsen(&mut case, self.coarse.load(Ordering::Relaxed));
@@ -193,7 +193,8 @@ impl Bench {
                         let (sigma, z) = (profile.sigma, profile.z);
                         let outline = Outline { sigma, z, pressure: profile.disjoining_pressure };
                         let outline = outline.thinned(OUTLINE);
-                        result.pictures.states = vec![State { point: at, plate: point.p, outline }];
+                        result.pictures.states =
+                            vec![State { point: at, plate: point.p, plate_below: None, outline }];
                     }
                 }
                 result
@@ -218,7 +219,7 @@ impl Bench {
         {
             return Ok(Some(Arc::clone(traced)));
         }
-        let LoadedCase { case, notes } = self.load(set)?;
+        let LoadedCase { case, notes, .. } = self.load(set)?;
         let mut ended = false;
         let observer: &mut Observer<'_> = &mut |_| {
             ended = self.is_awaited();

@@ -30,6 +30,7 @@
       }
       for (const state of curve.states) {
         if (state.plate !== null) state.plate *= radius;
+        if (state.below) state.below *= radius;
         state.sigma = times(state.sigma, radius);
         state.z = times(state.z, radius);
         state.pressure = times(state.pressure, laboratory.film[1]);
@@ -566,7 +567,7 @@
   const of_shape = () => {
     const all = curves.flatMap((curve) => curve.states);
     const wide = 1.06 * Math.max(radius, ...all.map((one) => Math.max(...one.sigma)));
-    const high = 1.06 * Math.max(radius, ...all.map((one) => Math.max(...one.z)));
+    const high = 1.06 * Math.max(radius, ...all.map((one) => Math.max(...one.z.map(Math.abs))));
     const turn = Array.from({ length: 121 }, (_, i) => (i * Math.PI) / 60);
     const rest = { x: turn.map((a) => radius * Math.cos(a)), y: turn.map((a) => radius * Math.sin(a)), from: 0, to: 120, width: 1, dashed: true };
     return {
@@ -585,9 +586,13 @@
         if (!one) return [];
         const end = u.scales.x.max;
         const dashed = current().unstable[current().point] > 0;
-        const plates = one.plate === null ? [] : [one.plate, -one.plate].map((z) => (
+        // a meridian from pole to pole has a plate of its own at either
+        const whole = "below" in one;
+        const heights = (whole ? [one.plate, one.below] : one.plate === null ? [] : [one.plate, -one.plate]).filter((z) => z !== null);
+        const plates = heights.map((z) => (
           { x: [-end, end], y: [z, z], from: 0, to: 1, colour: ink.ink, width: 2.5 }));
-        const quarters = [[1, 1], [-1, 1], [1, -1], [-1, -1]].map(([right, up]) => (
+        const images = [[1, 1], [-1, 1], ...(whole ? [] : [[1, -1], [-1, -1]])];
+        const quarters = images.map(([right, up]) => (
           { x: one.sigma, y: one.z, from: 0, to: one.sigma.length - 1, right, up, colour: colour(selected.curve), width: 2.5, dashed }));
         return [{ ...rest, colour: ink.soft }, ...plates, ...quarters];
       },
@@ -607,10 +612,20 @@
       lines: () => {
         const one = state(current());
         if (!one) return [];
-        return [{
-          x: one.sigma, y: one.pressure, from: 0, to: one.sigma.length - 1, colour: colour(selected.curve), width: 2,
-          dashed: current().unstable[current().point] > 0,
-        }];
+        const last = one.sigma.length - 1;
+        const line = { x: one.sigma, y: one.pressure, width: 2, dashed: current().unstable[current().point] > 0 };
+        if (!("below" in one)) return [{ ...line, from: 0, to: last, colour: colour(selected.curve) }];
+        // the films of both plates, from their poles to the widest place
+        const middle = one.sigma.indexOf(Math.max(...one.sigma));
+        return [
+          { ...line, from: middle, to: last, colour: ink.soft, width: 3.5 },
+          { ...line, from: 0, to: middle, colour: colour(selected.curve) },
+        ];
+      },
+      legend: (key) => {
+        if (curves.some((curve) => curve.states.some((one) => "below" in one))) {
+          legendOf(key, [[sample(`var(--c${selected.curve})`), "upper plate"], [sample("var(--soft)"), "lower plate"]]);
+        }
       },
     };
   };

@@ -28,14 +28,19 @@ pub fn draw_map(
     let y = match result.parameter.as_str() {
         "z0" => DISTANCE.to_owned(),
         "alpha" => "contact angle α (degrees)".to_owned(),
+        "base" => "base of the cantilever/R₀".to_owned(),
         other => named(case, other),
     };
     let x = match result.key.as_str() {
-        key if !matches!(result.parameter.as_str(), "z0" | "alpha") => &named(case, key),
+        key if !matches!(result.parameter.as_str(), "z0" | "alpha" | "base") => &named(case, key),
         "adhesion" => "adhesion w₀/χ",
         "bending" => "bending stiffness k_{b}/(χR₀²)",
         "pressure" => "ambient pressure P_{A}R₀/χ",
         "film" => "film length δ_{A}/R₀",
+        "adhesion_top" => "adhesion of the upper plate w₀/χ",
+        "film_top" => "film length of the upper plate δ_{A}/R₀",
+        "adhesion_bottom" => "adhesion of the lower plate w₀/χ",
+        "film_bottom" => "film length of the lower plate δ_{A}/R₀",
         "surface_tension" => "surface tension γ_{BW}/χ",
         "gas_exponent" => "gas exponent γ",
         "poisson" => "Poisson's ratio ν",
@@ -107,7 +112,8 @@ fn chart(case: &ResolvedCase, result: &MapResult, titles: [&str; 2], (x, y): (f6
         }
     }
     let own = value(case, &result.key).map(|value| x * value);
-    let heading = titled(&result.case, case);
+    // one of the numbers varies: what follows are those of the case, which has a line of its own
+    let heading = titled(&result.case, case).replacen('\n', "\nthis case: ", 1);
     let mut chart = draw::plane(&heading, titles, &curves, own, &picture);
     // the branch comes from where its path starts, with one state
     let folds: Vec<Vec<(f64, f64)>> = result
@@ -151,6 +157,19 @@ fn value(case: &ResolvedCase, key: &str) -> Option<f64> {
             "b" => ring.shell.law.b(),
             _ => None,
         },
+        ProblemCase::TwoPlates(plates) => match (key, plates.plates) {
+            ("bending", _) => Some(plates.bending),
+            ("pressure", _) => Some(plates.pressure),
+            ("surface_tension", _) => Some(plates.surface_tension),
+            ("gas_exponent", _) => Some(plates.gas_exponent),
+            ("poisson", _) => Some(plates.shell.poisson),
+            ("b", _) => plates.shell.law.b(),
+            ("adhesion_top", [Some(plate), _]) | ("adhesion_bottom", [_, Some(plate)]) => {
+                Some(plate.adhesion)
+            }
+            ("film_top", [Some(plate), _]) | ("film_bottom", [_, Some(plate)]) => Some(plate.film),
+            _ => None,
+        },
         ProblemCase::Catalogue(problem) => problem.parameters.get(key).copied(),
         _ => None,
     }
@@ -172,5 +191,7 @@ mod tests {
         let svg = String::from_utf8(files[0].1.clone()).unwrap();
         assert!(svg.contains("hysteresis") && svg.contains(">parameter μ<"), "{svg}");
         assert!(svg.contains(">this case<") && svg.contains(">fold<"), "{svg}");
+        // the parameter that varies is that of the case in the title, and said to be
+        assert!(svg.contains("this case: "), "{svg}");
     }
 }

@@ -122,7 +122,7 @@ impl RawCase {
         let result = py.detach(|| {
             run::run_trace(&self.case, &mut |at| watcher.tell(at.points, at.events, at.parameter))
         });
-        Ok((trace_dict(py, &watcher.settle(result)?)?, watcher.failure))
+        Ok((trace_dict(py, &self.case, &watcher.settle(result)?)?, watcher.failure))
     }
 
     /// A diagram.
@@ -138,7 +138,7 @@ impl RawCase {
                 watcher.tell(at.branch.points, at.branch.events, at.branch.parameter)
             })
         });
-        Ok((diagram_dict(py, &watcher.settle(result)?)?, watcher.failure))
+        Ok((diagram_dict(py, &self.case, &watcher.settle(result)?)?, watcher.failure))
     }
 
     /// A cycle of loading and unloading.
@@ -174,7 +174,7 @@ impl RawCase {
                 watcher.tell(at.points, at.events, at.parameter)
             })
         });
-        Ok((map_dict(py, &watcher.settle(result)?)?, watcher.failure))
+        Ok((map_dict(py, &self.case, &watcher.settle(result)?)?, watcher.failure))
     }
 }
 
@@ -251,9 +251,13 @@ fn table_dict<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict
     Ok(dict)
 }
 
-fn trace_dict<'py>(py: Python<'py>, result: &TraceResult) -> PyResult<Bound<'py, PyDict>> {
+fn trace_dict<'py>(
+    py: Python<'py>,
+    case: &ResolvedCase,
+    result: &TraceResult,
+) -> PyResult<Bound<'py, PyDict>> {
     let dict = table_dict(py, &result.table)?;
-    dict.set_item("json", json(events_json(result))?)?;
+    dict.set_item("json", json(events_json(case, result))?)?;
     let pictures = &result.pictures;
     let shapes = PyList::empty(py);
     for shape in &pictures.shapes {
@@ -290,12 +294,16 @@ fn trace_dict<'py>(py: Python<'py>, result: &TraceResult) -> PyResult<Bound<'py,
     Ok(dict)
 }
 
-fn diagram_dict<'py>(py: Python<'py>, result: &DiagramResult) -> PyResult<Bound<'py, PyDict>> {
+fn diagram_dict<'py>(
+    py: Python<'py>,
+    case: &ResolvedCase,
+    result: &DiagramResult,
+) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    dict.set_item("json", json(diagram_json(result))?)?;
+    dict.set_item("json", json(diagram_json(case, result))?)?;
     let branches = PyList::empty(py);
     for one in &result.branches {
-        branches.append(trace_dict(py, &one.trace)?)?;
+        branches.append(trace_dict(py, case, &one.trace)?)?;
     }
     dict.set_item("branches", branches)?;
     let joints = pythonize::pythonize(py, &result.joints)?;
@@ -303,9 +311,13 @@ fn diagram_dict<'py>(py: Python<'py>, result: &DiagramResult) -> PyResult<Bound<
     Ok(dict)
 }
 
-fn map_dict<'py>(py: Python<'py>, result: &MapResult) -> PyResult<Bound<'py, PyDict>> {
+fn map_dict<'py>(
+    py: Python<'py>,
+    case: &ResolvedCase,
+    result: &MapResult,
+) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    dict.set_item("json", json(map_json(result))?)?;
+    dict.set_item("json", json(map_json(case, result))?)?;
     let curves = PyList::empty(py);
     for curve in &result.curves {
         let one = table_dict(py, &curve.table)?;

@@ -117,6 +117,28 @@ fn which_sum_of_two_modes_is_found_does_not_matter() {
     }
 }
 
+/// A weak film lets the bubble come off its plate without a jump: both ways lead through the pitchfork of the
+/// mirror images, whose mode is the softer the weaker the film, and nothing is dissipated.
+#[test]
+fn a_weak_film_is_left_and_met_without_a_jump() {
+    for adhesion in [8.18e-4, 8.18e-5, 2e-5, 8.18e-6, 2e-6] {
+        let half = contact(60, Law::Hooke, [1.01e-3, 1.66e-3, adhesion, 0.066, 0.0, 1.4]);
+        let groups = TwoPlatesGroups::equal(half.groups());
+        let problem = TwoPlatesProblem::new(half.shell(), &groups, half.mesh().clone()).unwrap();
+        let x = stable_start(&problem, &problem.initial_state(), 1.4).unwrap();
+        let cycle = go(&problem, &x, &settings(1.4, 0.9, RelaxationSettings::default()));
+        assert_eq!(cycle.stopped.reason, StopReason::ClosedLoop, "{adhesion}: {:?}", cycle.stopped);
+        assert!(cycle.jumps.is_empty(), "{adhesion}: {:?}", cycle.jumps);
+        let work = balance(&problem, &cycle).unwrap();
+        near(work.loop_area.unwrap(), 0.0, 1e-9 * work.approach.abs());
+        // on one plate at first, between both when they are near
+        let shift = |at: Option<usize>| shape(&problem, &cycle, at)[0];
+        assert!(shift(Some(0)) > 0.1);
+        let turn = cycle.points.iter().position(|point| point.direction == Direction::Retract);
+        near(shift(turn), 0.0, 1e-7);
+    }
+}
+
 /// Beyond its folds the buckled shell loses its mirror image too: one dimple grows while the other
 /// heals, and the way back is another one.
 #[test]

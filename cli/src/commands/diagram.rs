@@ -55,7 +55,7 @@ pub(super) fn diagram(arguments: &DiagramArguments, listen: &Listen<'_>) -> Done
     observer.finish();
     let result = outcome.map_err(|error| refuse(&error))?;
     let made = results::diagram(&case, &result, output.wanted(folder.as_ref(), arguments.report));
-    let summary = |written: Option<&Path>| diagram_summary(&result, written);
+    let summary = |written: Option<&Path>| diagram_summary(&case, &result, written);
     let done = output.deliver(folder.as_ref(), made, &inputs, summary, result.followed);
     if let Some(checkpoint) = checkpoint {
         if let Some(error) = checkpoint.failure() {

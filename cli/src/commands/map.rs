@@ -21,6 +21,6 @@ pub(super) fn map(arguments: &MapArguments, listen: &Listen<'_>) -> Done {
     let result = outcome.map_err(|error| super::refuse(&error.advised()))?;
     let made = results::map(&case, &result, output.wanted(folder.as_ref(), false));
     let complete = result.stopped_because.is_complete();
-    let summary = |written: Option<&std::path::Path>| map_summary(&result, written);
+    let summary = |written: Option<&std::path::Path>| map_summary(&case, &result, written);
     output.deliver(folder.as_ref(), made, &inputs, summary, complete)
 }

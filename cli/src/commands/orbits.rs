@@ -21,6 +21,6 @@ pub(super) fn orbits(arguments: &OrbitsArguments, listen: &Listen<'_>) -> Done {
     observer.finish();
     let result = outcome.map_err(|error| super::refuse(&error.advised()))?;
     let made = results::orbits(&case, &result, output.wanted(folder.as_ref(), false));
-    let summary = |written: Option<&Path>| diagram_summary(&result, written);
+    let summary = |written: Option<&Path>| diagram_summary(&case, &result, written);
     output.deliver(folder.as_ref(), made, &inputs, summary, result.followed)
 }

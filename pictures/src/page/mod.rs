@@ -98,7 +98,8 @@ struct Mark {
     unstable: Option<[Option<usize>; 2]>,
 }
 
-/// The state at a point: an axisymmetric, mirror-symmetric shell between two plates or rings.
+/// The state at a point: an axisymmetric shell between two plates or rings, its own mirror image unless it has
+/// a lower plate of its own.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 struct State {
     /// The point of the curve.
@@ -106,7 +107,10 @@ struct State {
     /// Height of the upper plate, or of the plane of the upper ring.
     #[serde(serialize_with = "round::number")]
     plate: f64,
-    /// The meridian, from the pole to the equator: distances from the axis.
+    /// Height of the lower plate, of a shell from pole to pole; null for one that is not there.
+    #[serde(serialize_with = "round::optional", skip_serializing_if = "Option::is_none")]
+    below: Option<f64>,
+    /// The meridian, from the pole to the equator or to the other pole: distances from the axis.
     #[serde(serialize_with = "round::numbers")]
     sigma: Vec<f64>,
     /// Heights above the equator.

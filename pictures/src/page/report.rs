@@ -85,8 +85,14 @@ pub fn cycle_report(case: &ResolvedCase, cycle: &CycleResult) -> Result<String, 
         jumps: &[],
     };
     let lines: Vec<Line<'_>> = [complete].into_iter().chain(ways).collect();
+    let counted = cycle.points.iter().any(|row| row.modes.is_some());
+    let which = if counted { " of the complete branch" } else { "" };
+    let own = if cycle.both_parities { "axisymmetric modes" } else { "axisymmetric mirror images" };
+    let separator = if cycle.stopped_detail.is_empty() { "" } else { "; " };
+    let subtitle =
+        format!("{}{separator}stability{which} against {own} only", cycle.stopped_detail);
     // the complete branch lies below the path
-    page(case, &cycle.stopped_detail, cycle.parameter, &lines, 1)
+    page(case, &subtitle, cycle.parameter, &lines, 1)
 }
 
 fn page(
@@ -183,7 +189,7 @@ impl Kind {
 
 fn state(state: &record::State) -> State {
     let record::Outline { sigma, z, pressure } = state.outline.clone();
-    State { point: state.point, plate: state.plate, sigma, z, pressure }
+    State { point: state.point, plate: state.plate, below: state.plate_below, sigma, z, pressure }
 }
 
 fn pair(name: &str, label: &str) -> (String, String) {
@@ -285,7 +291,11 @@ fn curve(line: &Line<'_>) -> Curve {
 fn unstable(table: &Table) -> Vec<i32> {
     let mut total = table.numbers("unstable");
     for kind in ["unstable_antisymmetric", "unstable_modes"] {
-        total.iter_mut().zip(table.numbers(kind)).for_each(|(total, n)| *total += n);
+        let own = table.numbers(kind);
+        // an empty column is counted elsewhere: from pole to pole either parity is the branch's own
+        if own.iter().any(|n| n.is_finite()) {
+            total.iter_mut().zip(own).for_each(|(total, n)| *total += n);
+        }
     }
     total.iter().map(|n| if n.is_finite() { *n as i32 } else { -1 }).collect()
 }

@@ -20,7 +20,7 @@ pub fn diagram_names() -> Vec<&'static str> {
 
 /// What a diagram leaves: the JSON alone unless files are wanted.
 pub fn diagram(case: &ResolvedCase, result: &DiagramResult, wanted: Option<Wanted>) -> Results {
-    let mut made = Results::new("diagram.json", diagram_json(result));
+    let mut made = Results::new("diagram.json", diagram_json(case, result));
     let Some(wanted) = wanted else { return made };
     add_branches(&mut made, case, result, wanted);
     if wanted.report {
@@ -40,7 +40,7 @@ pub fn orbits_names() -> Vec<&'static str> {
 
 /// What periodic orbits leave: the JSON alone unless files are wanted.
 pub fn orbits(case: &ResolvedCase, result: &DiagramResult, wanted: Option<Wanted>) -> Results {
-    let mut made = Results::new("orbits.json", diagram_json(result));
+    let mut made = Results::new("orbits.json", diagram_json(case, result));
     if let Some(wanted) = wanted {
         add_branches(&mut made, case, result, wanted);
     }

@@ -27,7 +27,7 @@ pub fn trace_names() -> Vec<&'static str> {
 
 /// What a trace leaves: the JSON alone unless files are wanted.
 pub fn trace(case: &ResolvedCase, result: &TraceResult, wanted: Option<Wanted>) -> Results {
-    let mut made = Results::new(EVENTS, events_json(result));
+    let mut made = Results::new(EVENTS, events_json(case, result));
     let Some(wanted) = wanted else { return made };
     made.file(CASE, case.to_toml());
     made.attempt(BRANCH, branch_csv(&result.table));
@@ -82,7 +82,7 @@ pub fn map_names() -> Vec<&'static str> {
 
 /// What a map leaves: the JSON alone unless files are wanted.
 pub fn map(case: &ResolvedCase, result: &MapResult, wanted: Option<Wanted>) -> Results {
-    let mut made = Results::new(CURVES, map_json(result));
+    let mut made = Results::new(CURVES, map_json(case, result));
     let Some(wanted) = wanted else { return made };
     made.file(CASE, case.to_toml());
     let tables: Vec<&Table> = result.curves.iter().map(|curve| &curve.table).collect();

@@ -22,6 +22,7 @@ pub use cycle::{Cycle, CycleError, CyclePoint, CycleSettings, Direction, JUMP, J
 pub use flow::{Motion, MotionError, Relaxation, RelaxationSettings, Side};
 pub use loaded::LoadedProblem;
 pub use maxwell::{MaxwellPoint, maxwell_points};
+pub(crate) use start::device_settings;
 pub use start::{StartError, device_watches, free_start, loaded_start, trace_loaded};
 
 use continuation::{EvalError, ParamId, Problem};
@@ -195,7 +196,7 @@ pub trait Loading: Problem {
         None
     }
     /// The mirror image of a state, where it is a state of the same problem and may be another one.
-    fn mirrored(&self, _x: &[f64]) -> Option<Vec<f64>> {
+    fn mirrored(&self, _x: &[f64], _p: &[f64]) -> Option<Vec<f64>> {
         None
     }
 }

@@ -95,7 +95,7 @@ const SHORTEST: f64 = 1e-10;
 
 /// Settings without a shortest step get one that is fit for the folds of a device: where the force
 /// falls steeply behind its maximum they are needles, far thinner than those of a grip.
-pub(super) fn device_settings(device: Device, settings: Settings) -> Settings {
+pub(crate) fn device_settings(device: Device, settings: Settings) -> Settings {
     if device == Device::Grip || settings.min_step.is_some() {
         return settings;
     }

@@ -182,6 +182,7 @@ impl Scan {
         let none = ModeCount { negative: 0, certain: true };
         Scan {
             antisymmetric: 0,
+            antisymmetric_certain: true,
             modes: scan.modes,
             first_n: scan.first_n,
             n_max: scan.n_max,

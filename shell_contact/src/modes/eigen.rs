@@ -5,6 +5,7 @@ use super::ends::{Ends, Neutral};
 use super::{AsymmetricModes, ModeCount, Parity};
 use continuation::Matrix;
 use continuation::linalg::SymmetricBand;
+use std::f64::consts::PI;
 
 /// Inverse iterations: more are of no use, a cluster then holds any vector of its space.
 const ITERATIONS: usize = 60;
@@ -39,6 +40,23 @@ pub struct ModeShape {
 }
 
 impl ModeShape {
+    /// The same from pole to pole.
+    pub(crate) fn mirrored(&self, parity: Parity) -> ModeShape {
+        let even = if parity == Parity::Symmetric { 1.0 } else { -1.0 };
+        // w is upwards in both halves
+        let field = |own: &[f64], sign: f64| -> Vec<f64> {
+            let below = own.iter().rev().skip(1).map(|x| sign * x);
+            own.iter().copied().chain(below).collect()
+        };
+        let below = self.s.iter().rev().skip(1).map(|s| PI - s);
+        ModeShape {
+            s: self.s.iter().copied().chain(below).collect(),
+            u: field(&self.u, even),
+            v: field(&self.v, even),
+            w: field(&self.w, -even),
+        }
+    }
+
     pub(super) fn normalised(mut self) -> ModeShape {
         let largest =
             |x: &[f64]| x.iter().fold(0.0_f64, |m, &x| if x.abs() > m.abs() { x } else { m });

@@ -118,6 +118,8 @@ pub struct ModeCount {
 pub struct Scan {
     /// Unstable modes of `n = 0` that break the equatorial symmetry.
     pub antisymmetric: usize,
+    /// Whether that number is certain, whatever the others are.
+    pub antisymmetric_certain: bool,
     /// Unstable modes of `n ≥ 1`, each pair `cos nφ`, `sin nφ` counted once.
     pub modes: usize,
     /// The smallest unstable `n ≥ 1`.
@@ -283,7 +285,7 @@ impl<'a> AsymmetricModes<'a> {
         let odd = self.count(0, Parity::Antisymmetric);
         scan.by_wave.clear();
         (scan.antisymmetric, scan.modes, scan.first_n) = (odd.negative, 0, None);
-        scan.certain = odd.certain;
+        (scan.antisymmetric_certain, scan.certain) = (odd.certain, odd.certain);
         let mut extent = Extent::new(self.bound, max_n);
         while let Some(n) = extent.next() {
             let counts = self.counts(n);

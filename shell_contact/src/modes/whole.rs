@@ -10,12 +10,12 @@ use super::elements::{self, AT_POLE, Column, Element, Masses, ROWS};
 use super::ends::{Ends, FIELDS, HALF_BANDWIDTH, Neutral, Slot};
 use super::{Extent, ModeCount, Parity, bound, count_negative};
 use crate::density::Coefficients;
-use crate::device::Loading;
+use crate::device::{Device, Loading};
 use crate::film::Potential;
 use crate::gas::Gas;
 use crate::membrane::Membrane;
 use crate::meridian::Mesh;
-use crate::two_plates::{Side, SupportedProblem, TwoPlatesProblem};
+use crate::two_plates::{MirrorHalf, Side, SupportedProblem, TwoPlatesProblem};
 use continuation::EvalError;
 use continuation::linalg::SymmetricBand;
 
@@ -64,9 +64,27 @@ pub trait WholeShell: Loading {
         p: &[f64],
         modes: &mut WholeModes<'_>,
     ) -> Result<(), EvalError>;
+    /// The shell between its plates, without supports.
+    fn between_plates(&self) -> &TwoPlatesProblem;
+    /// The half model whose states are those of this problem that are mirror images, if it has any.
+    fn mirror_half(&self) -> Option<MirrorHalf>;
+    /// A state of that half under a plate at `z0` as one of this problem, with its parameter at `value`.
+    fn joined_images(&self, u: &[f64], z0: f64, value: f64) -> Vec<f64>;
 }
 
 impl WholeShell for TwoPlatesProblem {
+    fn between_plates(&self) -> &TwoPlatesProblem {
+        self
+    }
+
+    fn mirror_half(&self) -> Option<MirrorHalf> {
+        Some(MirrorHalf { shell: self.half_shell()?, device: Device::Grip })
+    }
+
+    fn joined_images(&self, u: &[f64], _: f64, _: f64) -> Vec<f64> {
+        self.joined(u, u, 0.0)
+    }
+
     fn half_mesh(&self) -> &Mesh {
         self.mesh()
     }
@@ -84,6 +102,20 @@ impl WholeShell for TwoPlatesProblem {
 /// Held, the equator stays in the mid-plane on the average over `φ` only: modes with waves are not held.
 /// Nor do they move a plate on a spring.
 impl WholeShell for SupportedProblem<'_> {
+    fn between_plates(&self) -> &TwoPlatesProblem {
+        self.shell()
+    }
+
+    fn mirror_half(&self) -> Option<MirrorHalf> {
+        self.mirror_half_of()
+    }
+
+    /// The lower plate stands still: the shell goes half the way of the upper one.
+    fn joined_images(&self, u: &[f64], z0: f64, value: f64) -> Vec<f64> {
+        let lift = self.support().spring.map_or(0.0, |_| z0 - value);
+        self.state(&self.shell().joined(u, u, lift), 2.0 * z0 - value)
+    }
+
     fn half_mesh(&self) -> &Mesh {
         self.shell().mesh()
     }

@@ -214,7 +214,11 @@ fn direction<P: Problem>(problem: &P, mut du: Vec<f64>, dp: f64) -> Direction {
 }
 
 /// The odd vector whose stiffness is nearest to zero, by inverse iteration among odd vectors.
-fn odd_mode(problem: &TwoPlatesProblem, u: &[f64], p: &[f64]) -> Result<Vec<f64>, ForkError> {
+pub(super) fn odd_mode(
+    problem: &TwoPlatesProblem,
+    u: &[f64],
+    p: &[f64],
+) -> Result<Vec<f64>, ForkError> {
     let mut stiffness = problem.new_jacobian();
     problem.jacobian(u, p, &mut stiffness)?;
     stiffness.factor(f64::EPSILON * stiffness.norm());

@@ -66,7 +66,7 @@ fn column(name: &str) -> usize {
 
 impl TwoPlatesProblem {
     /// Whether both plates have the same film.
-    fn plates_are_alike(&self) -> bool {
+    pub(super) fn plates_are_alike(&self) -> bool {
         let (top, bottom) = (self.groups.top, self.groups.bottom);
         // potentials of other types may be the same functions: in attraction, at rest, in repulsion
         let same = |at: f64| {
@@ -117,7 +117,7 @@ impl Loading for TwoPlatesProblem {
     }
 
     /// Where both plates are the same.
-    fn mirrored(&self, x: &[f64]) -> Option<Vec<f64>> {
+    fn mirrored(&self, x: &[f64], _: &[f64]) -> Option<Vec<f64>> {
         let alike = self.plates_are_alike();
         alike.then(|| self.reflected(x))
     }
@@ -173,12 +173,29 @@ impl Loading for SupportedProblem<'_> {
         Ok(self.observation(x, p)?.0.whole.force)
     }
 
-    /// Between two equal plates that are rigid.
-    fn mirrored(&self, x: &[f64]) -> Option<Vec<f64>> {
-        let alike = self.support().spring.is_none() && self.shell().plates_are_alike();
-        let (u, more) = x.split_at(self.shell().dim());
-        // the multiplier is a difference of forces
-        alike
-            .then(|| self.shell().reflected(u).into_iter().chain(more.iter().map(|m| -m)).collect())
+    /// Between two equal plates. A spring leaves the mirror in the middle between them, where the shell is
+    /// free to follow it.
+    fn mirrored(&self, x: &[f64], p: &[f64]) -> Option<Vec<f64>> {
+        let shell = self.shell();
+        let (u, more) = x.split_at(shell.dim());
+        let Some(spring) = self.spring_border() else {
+            // the multiplier is a difference of forces
+            let more = more.iter().map(|m| -m);
+            return shell
+                .plates_are_alike()
+                .then(|| shell.reflected(u).into_iter().chain(more).collect());
+        };
+        if self.support().held || !shell.plates_are_alike() {
+            return None;
+        }
+        // twice the height of the middle: the lower plate is at minus the base
+        let lift = more.get(spring)? - p.first()?;
+        Some(
+            shell
+                .lifted(shell.reflected(u), lift)
+                .into_iter()
+                .chain(more.iter().copied())
+                .collect(),
+        )
     }
 }

@@ -52,6 +52,7 @@ mod observe;
 mod pairs;
 mod search;
 mod supported;
+mod symmetric;
 
 pub use fork::{ForkError, follow_asymmetric, leave_symmetry};
 pub use half::{Half, Side};
@@ -60,6 +61,7 @@ pub use observe::{NAMES, TwoPlatesObservation};
 pub use pairs::{SpringPair, spring_pairs};
 pub use search::{Unconnected, next_unconnected};
 pub use supported::{Support, SupportedProblem};
+pub use symmetric::{MirrorHalf, SymmetricBranch, trace_symmetric};
 
 use crate::contact::{gas_and_material, gas_and_material_of};
 use crate::density::Coefficients;
@@ -327,6 +329,17 @@ impl TwoPlatesProblem {
             }
         }
         out
+    }
+
+    /// A state moved upwards as a whole.
+    pub(crate) fn lifted(&self, mut u: Vec<f64>, by: f64) -> Vec<f64> {
+        let [top, _] = self.halves();
+        for j in 0..=2 * self.mesh.elements() as isize {
+            if let Some(w) = top.slot(Component::W, j).and_then(|(i, _)| u.get_mut(i)) {
+                *w += by;
+            }
+        }
+        u
     }
 
     /// The mirror image of a state: what was above is below.

@@ -119,7 +119,7 @@ impl Loading for Pitchfork {
         1.0
     }
 
-    fn mirrored(&self, x: &[f64]) -> Option<Vec<f64>> {
+    fn mirrored(&self, x: &[f64], _: &[f64]) -> Option<Vec<f64>> {
         Some(vec![-x[0], x[1]])
     }
 }

@@ -58,7 +58,7 @@ pub struct ResolvedCase {
     pub diagram: DiagramCase,
     /// Bounds of the second parameter of a map.
     pub map: MapCase,
-    /// What a trace or a diagram of a contact case counts as unstable.
+    /// What is counted as unstable along the branches of a shell between plates.
     pub stability: StabilityCase,
     /// How its pictures look.
     pub picture: PictureCase,
@@ -237,4 +237,6 @@ pub struct LoadedCase {
     pub case: ResolvedCase,
     /// Remarks for people.
     pub notes: Vec<String>,
+    /// Whether its text has a table `[stability]`, or all of that is a default.
+    pub says_stability: bool,
 }

@@ -135,7 +135,8 @@ impl<'a> Resolver<'a> {
             stability: stability?,
             picture: picture?,
         };
-        Some(LoadedCase { case, notes: self.notes.into_inner() })
+        let says_stability = self.root.get("stability").is_some();
+        Some(LoadedCase { case, notes: self.notes.into_inner(), says_stability })
     }
 
     /// Something that deserves to be said.

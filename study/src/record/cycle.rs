@@ -143,6 +143,12 @@ impl PathModes {
         }
     }
 
+    /// Its cells of the columns [`MODES`].
+    pub(crate) fn cells(&self) -> [Cell; 4] {
+        let antisymmetric = self.antisymmetric.map_or(Cell::Empty, Into::into);
+        [antisymmetric, self.modes.into(), self.first_n.into(), self.word().into()]
+    }
+
     /// The mode in words.
     fn kind(&self) -> String {
         match (self.antisymmetric, self.first_n) {
@@ -341,7 +347,8 @@ struct Document<'a> {
 }
 
 /// Columns of what a state is unstable to.
-const MODES: [&str; 4] = ["unstable_antisymmetric", "unstable_modes", "first_n", "stable"];
+pub(crate) const MODES: [&str; 4] =
+    ["unstable_antisymmetric", "unstable_modes", "first_n", "stable"];
 
 /// The path as a table.
 pub fn cycle_table(result: &CycleResult) -> Table {
@@ -368,9 +375,7 @@ pub fn cycle_table(result: &CycleResult) -> Table {
         }
         cells.push(row.event.as_str().into());
         if let (true, Some(modes)) = (counted, row.modes) {
-            let antisymmetric = modes.antisymmetric.map_or(Cell::Empty, Into::into);
-            let (number, first) = (modes.modes.into(), modes.first_n.into());
-            cells.extend([antisymmetric, number, first, modes.word().into()]);
+            cells.extend(modes.cells());
         }
         cells.resize(columns.len(), Cell::Empty);
         table.push(cells);

@@ -1,10 +1,13 @@
 //! `diagram.json`: the branches of a diagram, how they hang together, and the table for people.
 
 use super::events::{EventOf, ResolutionOf, StabilityOf};
+use super::number::rounded;
 use super::orbits::{CyclesRecord, OrbitsRecord};
-use super::result::{ResolutionRecord, StabilityRecord, TraceResult};
+use super::physical::{Laboratory, spoken};
+use super::result::{ResolutionRecord, StabilityRecord, Table, TraceResult};
 use super::summary::{aligned, count};
 use super::view::Curve;
+use crate::case::ResolvedCase;
 use continuation::StopReason;
 use continuation::diagram::Joint;
 use serde::Serialize;
@@ -202,52 +205,63 @@ impl DiagramResult {
     }
 }
 
-/// The JSON, indented, with a newline at the end; NaN and infinities are null.
+/// The JSON, indented, with a newline at the end; NaN and infinities are null. Special points of a case in
+/// physical units have their numbers in those too.
 ///
 /// # Errors
 /// What the writer reports; memory does not fail, so none is expected.
-pub fn diagram_json(result: &DiagramResult) -> Result<String, serde_json::Error> {
-    let mut text = serde_json::to_string_pretty(result)?;
+pub fn diagram_json(
+    case: &ResolvedCase,
+    result: &DiagramResult,
+) -> Result<String, serde_json::Error> {
+    let tables: Vec<&Table> = result.branches.iter().map(|one| &one.trace.table).collect();
+    let laboratory = Laboratory::of(case, &tables);
+    let mut text = serde_json::to_string_pretty(&Document(result, laboratory.as_ref()))?;
     text.push('\n');
     Ok(text)
 }
 
-impl Serialize for DiagramResult {
+struct Document<'a>(&'a DiagramResult, Option<&'a Laboratory>);
+
+impl Serialize for Document<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let branches: Vec<BranchOf<'_>> = self.branches.iter().map(BranchOf).collect();
-        let joints: Vec<JointOf<'_>> = self.joints.iter().map(JointOf).collect();
+        let Document(result, laboratory) = self;
+        let of = |one| BranchOf(one, *laboratory);
+        let branches: Vec<BranchOf<'_>> = result.branches.iter().map(of).collect();
+        let joints: Vec<JointOf<'_>> = result.joints.iter().map(JointOf).collect();
         let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("case", &self.case)?;
-        map.serialize_entry("parameter", &self.parameter)?;
+        map.serialize_entry("case", &result.case)?;
+        map.serialize_entry("parameter", &result.parameter)?;
         map.serialize_entry("branches", &branches)?;
         map.serialize_entry("joints", &joints)?;
-        map.serialize_entry("stopped_because", self.stopped_because)?;
-        map.serialize_entry("stopped_detail", &self.stopped_detail)?;
-        if let Some(cycles) = &self.cycles {
+        map.serialize_entry("stopped_because", result.stopped_because)?;
+        map.serialize_entry("stopped_detail", &result.stopped_detail)?;
+        if let Some(cycles) = &result.cycles {
             map.serialize_entry("cycles", cycles)?;
         }
-        map.serialize_entry("points", &self.points())?;
-        map.serialize_entry("certified", &self.certified())?;
-        if let Some(stability) = &self.stability() {
+        map.serialize_entry("points", &result.points())?;
+        map.serialize_entry("certified", &result.certified())?;
+        if let Some(stability) = &result.stability() {
             map.serialize_entry("stability", &StabilityOf(stability))?;
         }
-        if let Some(resolution) = &self.resolution() {
+        if let Some(resolution) = &result.resolution() {
             map.serialize_entry("resolution", &ResolutionOf(resolution))?;
         }
-        map.serialize_entry("newton_iterations", &self.newton_iterations)?;
-        map.serialize_entry("seconds", &self.seconds)?;
+        map.serialize_entry("newton_iterations", &result.newton_iterations)?;
+        map.serialize_entry("seconds", &result.seconds)?;
         map.end()
     }
 }
 
-struct BranchOf<'a>(&'a BranchRecord);
+struct BranchOf<'a>(&'a BranchRecord, Option<&'a Laboratory>);
 
 impl Serialize for BranchOf<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let BranchRecord { id, from, depth, symmetry, began_because, near, trace, .. } = self.0;
         let parameter = &trace.parameter;
+        let laboratory = self.1.map(|laboratory| (laboratory, &trace.table));
         let events: Vec<EventOf<'_>> =
-            trace.events.iter().map(|event| EventOf { event, parameter }).collect();
+            trace.events.iter().map(|event| EventOf { event, parameter, laboratory }).collect();
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("id", id)?;
         map.serialize_entry("from", from)?;
@@ -317,7 +331,11 @@ impl Serialize for JointOf<'_> {
 }
 
 /// The table for people; `folder` is where the files went, if they went anywhere.
-pub fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> String {
+pub fn diagram_summary(
+    case: &ResolvedCase,
+    result: &DiagramResult,
+    folder: Option<&Path>,
+) -> String {
     let titles = ["branch", "from", "points", result.parameter.as_str(), "special points", "ends"];
     let mut rows = vec![titles.map(str::to_owned).to_vec()];
     for one in &result.branches {
@@ -346,6 +364,7 @@ pub fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> String 
         ]);
     }
     let mut out = aligned(&rows);
+    out.push_str(&physically(case, result));
     if let Some(stability) = result.stability() {
         out.push_str(&stability.text());
     }
@@ -379,6 +398,38 @@ pub fn diagram_summary(result: &DiagramResult, folder: Option<&Path>) -> String 
     out
 }
 
+/// How far each branch goes, and with which forces, in the units of a case that is in physical ones.
+fn physically(case: &ResolvedCase, result: &DiagramResult) -> String {
+    let tables: Vec<&Table> = result.branches.iter().map(|one| &one.trace.table).collect();
+    let Some(laboratory) = Laboratory::of(case, &tables) else { return String::new() };
+    let names = ["z0", "deformation", "force", "energy_total"];
+    let known = |name: &&str| tables.first().is_some_and(|t| !t.numbers(name).is_empty());
+    let columns: Vec<(&str, &str, f64)> = names
+        .iter()
+        .filter(|name| known(name))
+        .filter_map(|name| {
+            let (unit, factor) = laboratory.convert(tables.first()?.unit(name))?;
+            Some((*name, unit, factor))
+        })
+        .collect();
+    let mut rows = vec![vec!["in physical units".to_owned()]];
+    rows[0].extend(columns.iter().map(|(name, unit, _)| format!("{name} [{}]", spoken(unit))));
+    for one in &result.branches {
+        let mut row = vec![one.id.to_string()];
+        row.extend(columns.iter().map(|(name, _, factor)| {
+            let finite = one.trace.table.numbers(name).into_iter().filter(|x| x.is_finite());
+            let values: Vec<f64> = finite.map(|x| factor * x).collect();
+            if values.is_empty() {
+                return "–".to_owned();
+            }
+            let (low, high) = range(&values);
+            format!("{low} to {high}")
+        }));
+        rows.push(row);
+    }
+    format!("\n{}", aligned(&rows))
+}
+
 /// What nearly happens on the branches, a line each; empty where there is nothing.
 fn nearly(result: &DiagramResult) -> String {
     let mut out = String::new();
@@ -388,7 +439,7 @@ fn nearly(result: &DiagramResult) -> String {
             "folds" => "two folds that nearly meet",
             _ => "nearly a branch point, kept apart by an imperfection,",
         };
-        let at = super::number::rounded(near.parameter);
+        let at = rounded(near.parameter);
         let gap = format!("{:.0e}", near.gap);
         let _ =
             writeln!(out, "branch {}: {what} at {} = {at} (gap {gap})", one.id, result.parameter);
@@ -402,7 +453,7 @@ fn nearly(result: &DiagramResult) -> String {
 fn range(values: &[f64]) -> (String, String) {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    (super::number::rounded(low), super::number::rounded(high))
+    (rounded(low), rounded(high))
 }
 
 /// How many special points of which kinds.

@@ -1,28 +1,39 @@
 //! `events.json`: special points, why the branch ended, what it cost.
 
 use super::orbits::MultipliersOf;
-use super::result::{EventRecord, MaxwellRecord, ResolutionRecord, StabilityRecord, TraceResult};
+use super::physical::{Laboratory, in_unit};
+use super::result::{
+    EventRecord, MaxwellRecord, ResolutionRecord, StabilityRecord, Table, TraceResult,
+};
+use crate::case::ResolvedCase;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-/// The JSON, indented, with a newline at the end; NaN and infinities are null.
+/// The JSON, indented, with a newline at the end; NaN and infinities are null. Special points of a case in
+/// physical units have their numbers in those too.
 ///
 /// # Errors
 /// What the writer reports; memory does not fail, so none is expected.
-pub fn events_json(result: &TraceResult) -> Result<String, serde_json::Error> {
-    let mut text = serde_json::to_string_pretty(&Document(result))?;
+pub fn events_json(case: &ResolvedCase, result: &TraceResult) -> Result<String, serde_json::Error> {
+    let laboratory = Laboratory::of(case, &[&result.table]);
+    let mut text = serde_json::to_string_pretty(&Document(result, laboratory))?;
     text.push('\n');
     Ok(text)
 }
 
-struct Document<'a>(&'a TraceResult);
+struct Document<'a>(&'a TraceResult, Option<Laboratory>);
 
 impl Serialize for Document<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let result = self.0;
+        let Document(result, laboratory) = self;
+        let laboratory = laboratory.as_ref();
         let events: Vec<EventOf<'_>> = result
             .events
             .iter()
-            .map(|event| EventOf { event, parameter: &result.parameter })
+            .map(|event| EventOf {
+                event,
+                parameter: &result.parameter,
+                laboratory: laboratory.map(|laboratory| (laboratory, &result.table)),
+            })
             .collect();
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("case", &result.case)?;
@@ -48,7 +59,7 @@ impl Serialize for Document<'_> {
 }
 
 /// What was examined.
-pub(super) struct StabilityOf<'a>(pub(super) &'a StabilityRecord);
+pub(in crate::record) struct StabilityOf<'a>(pub(in crate::record) &'a StabilityRecord);
 
 impl Serialize for StabilityOf<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -96,6 +107,34 @@ impl Serialize for ResolutionOf<'_> {
 pub(super) struct EventOf<'a> {
     pub(super) event: &'a EventRecord,
     pub(super) parameter: &'a str,
+    /// The units of a case that is in physical ones, with the branch whose columns say what has which.
+    pub(super) laboratory: Option<(&'a Laboratory, &'a Table)>,
+}
+
+/// Numbers of a special point in physical units, the unit at the end of each name as in tables.
+struct Physically<'a>(&'a EventOf<'a>, &'a Laboratory, &'a Table);
+
+impl Serialize for Physically<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Physically(EventOf { event, parameter, .. }, laboratory, table) = self;
+        let mut values = vec![(*parameter, event.parameter)];
+        let others = [
+            ("z0", event.z0),
+            ("force", event.force),
+            ("deformation", event.deformation),
+            ("energy_total", event.energy_total),
+        ];
+        values.extend(others.into_iter().filter(|(name, _)| name != parameter));
+        let mut map = serializer.serialize_map(None)?;
+        for (name, value) in values {
+            let Some(((unit, factor), value)) = laboratory.convert(table.unit(name)).zip(value)
+            else {
+                continue;
+            };
+            map.serialize_entry(&in_unit(name, unit), &(factor * value))?;
+        }
+        map.end()
+    }
 }
 
 impl Serialize for EventOf<'_> {
@@ -144,6 +183,9 @@ impl Serialize for EventOf<'_> {
         }
         if !event.observables.is_empty() {
             map.serialize_entry("observables", &Named(&event.observables))?;
+        }
+        if let Some((laboratory, table)) = self.laboratory {
+            map.serialize_entry("physical", &Physically(self, laboratory, table))?;
         }
         map.end()
     }

@@ -2,8 +2,10 @@
 //! same for people.
 
 use super::number::rounded;
+use super::physical::{Laboratory, in_unit, spoken};
 use super::result::Table;
 use super::summary::{aligned, count};
+use crate::case::ResolvedCase;
 use continuation::{Stop, StopReason};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::fmt::Write as _;
@@ -95,24 +97,26 @@ impl MapPoint {
     }
 }
 
-/// The JSON, indented, with a newline at the end.
+/// The JSON, indented, with a newline at the end. Special points of a case in physical units have their numbers
+/// in those too.
 ///
 /// # Errors
 /// What the writer reports; memory does not fail, so none is expected.
-pub fn map_json(result: &MapResult) -> Result<String, serde_json::Error> {
-    let mut text = serde_json::to_string_pretty(&Document(result))?;
+pub fn map_json(case: &ResolvedCase, result: &MapResult) -> Result<String, serde_json::Error> {
+    let mut text = serde_json::to_string_pretty(&Document(result, laboratory(case, result)))?;
     text.push('\n');
     Ok(text)
 }
 
-struct Document<'a>(&'a MapResult);
+struct Document<'a>(&'a MapResult, Option<(Laboratory, &'a Table)>);
 
 impl Serialize for Document<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let result = self.0;
+        let Document(result, laboratory) = self;
+        let laboratory = laboratory.as_ref().map(|(laboratory, table)| (laboratory, *table));
         let curves: Vec<CurveOf<'_>> = result.curves.iter().map(CurveOf).collect();
         let points: Vec<PointOf<'_>> =
-            result.points.iter().map(|point| PointOf { point, result }).collect();
+            result.points.iter().map(|point| PointOf { point, result, laboratory }).collect();
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("case", &result.case)?;
         map.serialize_entry("parameter", &result.parameter)?;
@@ -150,11 +154,12 @@ impl Serialize for CurveOf<'_> {
 struct PointOf<'a> {
     point: &'a MapPoint,
     result: &'a MapResult,
+    laboratory: Option<(&'a Laboratory, &'a Table)>,
 }
 
 impl Serialize for PointOf<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let PointOf { point, result } = self;
+        let PointOf { point, result, laboratory } = self;
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("kind", &point.kind)?;
         map.serialize_entry(&result.parameter, &point.first)?;
@@ -172,12 +177,22 @@ impl Serialize for PointOf<'_> {
         if !observables.is_empty() {
             map.serialize_entry("observables", &observables)?;
         }
+        if let Some((laboratory, table)) = laboratory {
+            let known = numbers(point, result).into_iter();
+            let physical: serde_json::Map<String, serde_json::Value> = known
+                .filter_map(|(name, value)| {
+                    let (unit, factor) = laboratory.convert(table.unit(name))?;
+                    Some((in_unit(name, unit), (factor * value?).into()))
+                })
+                .collect();
+            map.serialize_entry("physical", &physical)?;
+        }
         map.end()
     }
 }
 
 /// The summary; `folder` is where the files went, if they went anywhere.
-pub fn map_summary(result: &MapResult, folder: Option<&Path>) -> String {
+pub fn map_summary(case: &ResolvedCase, result: &MapResult, folder: Option<&Path>) -> String {
     let mut out = String::new();
     for note in &result.notes {
         let _ = writeln!(out, "note: {note}");
@@ -217,6 +232,7 @@ pub fn map_summary(result: &MapResult, folder: Option<&Path>) -> String {
             vec![point.kind.clone(), rounded(point.first), rounded(point.second), error]
         }));
         out.push_str(&aligned(&rows));
+        out.push_str(&physically(case, result));
     }
     out.push('\n');
     let _ = write!(out, "{}: stopped at {}", result.case, result.stopped_because);
@@ -234,4 +250,43 @@ pub fn map_summary(result: &MapResult, folder: Option<&Path>) -> String {
         let _ = writeln!(out, "written to {}", folder.display());
     }
     out
+}
+
+/// The units of a case that is in physical ones, and a curve whose columns say what has which.
+fn laboratory<'r>(case: &ResolvedCase, result: &'r MapResult) -> Option<(Laboratory, &'r Table)> {
+    let tables: Vec<&Table> = result.curves.iter().map(|curve| &curve.table).collect();
+    Some((Laboratory::of(case, &tables)?, *tables.first()?))
+}
+
+/// Both parameters and the force of a special point, with their names.
+fn numbers<'r>(point: &MapPoint, result: &'r MapResult) -> [(&'r str, Option<f64>); 3] {
+    [
+        (&result.parameter, Some(point.first)),
+        (&result.key, Some(point.second)),
+        ("force", point.force()),
+    ]
+}
+
+/// The special points in physical units.
+fn physically(case: &ResolvedCase, result: &MapResult) -> String {
+    let Some((laboratory, table)) = laboratory(case, result) else { return String::new() };
+    let unit = |name: &str| laboratory.convert(table.unit(name));
+    let mut rows = vec![vec!["in physical units".to_owned()]];
+    for point in &result.points {
+        let known = numbers(point, result);
+        let known: Vec<_> = known
+            .into_iter()
+            .filter_map(|(name, value)| Some((name, unit(name)?, value?)))
+            .collect();
+        if rows.len() == 1 {
+            let titles =
+                known.iter().map(|(name, (unit, _), _)| format!("{name} [{}]", spoken(unit)));
+            rows[0].extend(titles);
+        }
+        let mut row = vec![point.kind.clone()];
+        row.extend(known.iter().map(|(_, (_, factor), value)| rounded(factor * value)));
+        row.resize(rows[0].len(), "–".to_owned());
+        rows.push(row);
+    }
+    format!("\n{}", aligned(&rows))
 }

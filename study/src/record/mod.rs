@@ -20,6 +20,7 @@ pub mod view;
 mod tests;
 
 pub(crate) use column::{PLATES, RING};
+pub(crate) use cycle::MODES;
 pub use cycle::{CycleResult, FoldRecord, JumpRecord, PathModes, PathRow, ReportedCycle};
 pub use cycle::{StretchRecord, Way, cycle_json, cycle_summary, cycle_table};
 pub use diagram::{BranchOrigin, BranchRecord, DiagramResult, NearRecord, Symmetry};
@@ -35,5 +36,7 @@ pub use result::{
 };
 pub use result::{StabilityRecord, TraceResult};
 pub use summary::summary;
-pub use sweep::{CaseRecord, Status, SweepResult, events_table, sweep_json, sweep_summary};
+pub use sweep::{
+    CaseRecord, LossRecord, Status, SweepResult, events_table, sweep_json, sweep_summary,
+};
 pub use table::{branch_csv, modes_csv};

@@ -15,14 +15,17 @@ pub struct Outline {
     pub pressure: Vec<f64>,
 }
 
-/// The state at a point: an axisymmetric, mirror-symmetric shell between two plates or rings.
+/// The state at a point: an axisymmetric shell between two plates or rings, its own mirror image or from pole
+/// to pole.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct State {
     /// The point of the curve.
     pub point: usize,
     /// Height of the upper plate, or of the plane of the upper ring.
     pub plate: f64,
-    /// The meridian, from the pole to the equator.
+    /// Height of the lower plate, of a shell from pole to pole.
+    pub plate_below: Option<f64>,
+    /// The meridian, from the pole to the equator or to the other pole.
     pub outline: Outline,
 }
 

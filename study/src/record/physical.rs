@@ -153,7 +153,7 @@ impl Laboratory {
         let mut numbers: Vec<Vec<f64>> = Vec::new();
         for name in columns {
             let Some((unit, factor)) = self.convert(table.unit(name)) else { continue };
-            titles.push(format!("{name}_{}", unit.replace('^', "").replace('/', "_per_")));
+            titles.push(in_unit(name, unit));
             numbers.push(table.numbers(name).into_iter().map(|value| factor * value).collect());
         }
         for (name, values) in of_the_laboratory(case, &self.scales, table) {
@@ -178,6 +178,11 @@ impl Laboratory {
 /// A table in physical units by itself. `None` for a case that is not in physical units.
 pub fn physical_table(case: &ResolvedCase, table: &Table) -> Option<Table> {
     Some(Laboratory::of(case, &[table])?.table(case, table))
+}
+
+/// What a column is called that has this unit.
+pub(super) fn in_unit(name: &str, unit: &str) -> String {
+    format!("{name}_{}", unit.replace('^', "").replace('/', "_per_"))
 }
 
 /// A unit as people write it: tables do without the one letter that is not ASCII, and without raised digits.

@@ -111,6 +111,24 @@ impl Table {
         self.rows.iter().map(number).collect()
     }
 
+    /// The same with more columns, and their cells row by row.
+    pub(crate) fn beside(&self, columns: &[&str], cells: Vec<Vec<Cell>>) -> Table {
+        let names = columns.iter().map(ToString::to_string).collect();
+        let mut out = Table { rows: Vec::new(), ..self.clone() }.and(names);
+        for (row, more) in self.rows.iter().zip(cells) {
+            out.push(row.iter().cloned().chain(more).collect());
+        }
+        out
+    }
+
+    /// The same without the rows that have this word in a column.
+    pub(crate) fn without(&self, column: &str, word: &str) -> Table {
+        let at = self.columns.iter().position(|name| name == column);
+        let is_one = |row: &&Vec<Cell>| matches!(at.map(|at| &row[at]), Some(Cell::Text(own)) if own == word);
+        let rows = self.rows.iter().filter(|row| !is_one(row)).cloned().collect();
+        Table { columns: self.columns.clone(), rows, known: self.known }
+    }
+
     /// The words of a column, with the numbers of their rows.
     pub fn words(&self, column: &str) -> impl Iterator<Item = (usize, &str)> {
         let at = self.columns.iter().position(|name| name == column);
@@ -304,7 +322,7 @@ pub struct ShapeRecord {
 }
 
 /// Which modes the stability of a contact branch was examined for.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct StabilityRecord {
     /// Whether more than axisymmetric mirror images.
     pub full: bool,

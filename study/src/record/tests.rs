@@ -2,6 +2,7 @@
 
 use super::result::Cell;
 use super::*;
+use crate::case::ResolvedCase;
 use continuation::StopReason;
 
 fn example() -> TraceResult {
@@ -93,7 +94,7 @@ fn rows_are_as_long_as_the_header() {
 
 #[test]
 fn the_json_has_the_contract_s_names_and_nulls() {
-    let json = events_json(&example()).unwrap();
+    let json = events_json(&case("fig12"), &example()).unwrap();
     let read: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(read["case"], "fig12");
     assert_eq!(read["parameter"], "z0");
@@ -121,7 +122,7 @@ fn other_problems_use_their_own_parameter_s_name() {
     let mut result = example();
     result.parameter = "lambda".into();
     result.events[0].observables = vec![("max".into(), 1.19), ("odd".into(), f64::NAN)];
-    let json = events_json(&result).unwrap();
+    let json = events_json(&case("fig12"), &result).unwrap();
     let read: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(read["parameter"], "lambda");
     assert_eq!(read["events"][0]["lambda"], 0.9);
@@ -162,4 +163,30 @@ fn axes_may_show_columns_that_there_are() {
     }
     let columns = Table::contact().columns().to_vec();
     assert!(PLATES.iter().all(|name| columns.contains(&(*name).to_owned())));
+}
+
+fn case(name: &str) -> ResolvedCase {
+    crate::case::load(name.as_ref(), &[], &[]).unwrap().case
+}
+
+#[test]
+fn special_points_of_a_case_in_physical_units_have_those_too() {
+    let json = events_json(&case("polymer"), &example()).unwrap();
+    let read: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let physical = &read["events"][0]["physical"];
+    // R0 = 1.5 um, E h^3/(12 (1 - nu^2)) = 2.1e9 1.5625e-23/9 J, chi = 52.5 N/m
+    assert!((physical["z0_nm"].as_f64().unwrap() - 1350.0).abs() < 1e-9);
+    let scale = f64::sqrt(52.5 * 2.1e9 * 1.5625e-23 / 9.0);
+    let own = physical.as_object().unwrap().iter().find(|(name, _)| name.starts_with("force_"));
+    let (name, force) = own.unwrap();
+    let unit = match &name[6..] {
+        "pN" => 1e-12,
+        "nN" => 1e-9,
+        other => panic!("{other}"),
+    };
+    assert!((force.as_f64().unwrap() * unit / (2.698 * scale) - 1.0).abs() < 1e-12);
+    // what is not known has no unit either, and dimensionless cases have no such numbers
+    assert!(!physical.as_object().unwrap().keys().any(|name| name.starts_with("deformation")));
+    let plain = events_json(&case("fig12"), &example()).unwrap();
+    assert!(!plain.contains("physical"));
 }

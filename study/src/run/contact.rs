@@ -66,15 +66,16 @@ pub(super) fn run_reported(
     Ok(TraceResult { pictures, maxwell, ..result })
 }
 
-/// The same without what pictures show.
+/// The same without what pictures show, and without estimates of what the elements add.
 pub(super) fn run_plain(
     case: &ResolvedCase,
     contact: &ContactCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
-    let Traced { problem, branch, maxwell, seconds } = traced(case, contact, observer)?;
+    let (traced, stability) = scanned(case, contact, observer)?;
+    let Traced { problem, branch, maxwell, seconds } = traced;
     let resolved = Resolved::of(&problem, &branch);
-    let result = examined(case, &branch, seconds, &Stability::default(), Some(&resolved));
+    let result = examined(case, &branch, seconds, &stability, Some(&resolved));
     Ok(TraceResult { maxwell: Some(maxwell), ..result })
 }
 

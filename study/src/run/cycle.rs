@@ -1,6 +1,6 @@
 //! A cycle: the complete branch, the path once to and fro, and what it dissipates.
 
-use super::contact::{SAMPLES, follow, loaded_path, no_start, not_held, path, result, row, shell};
+use super::contact::{SAMPLES, follow, loaded_path, not_held, path, result, row, shell};
 use super::stability::Stability as Scanned;
 use super::two_plates::{self, BetweenPlates, WithPlates};
 use super::{Observer, RunError, listen, ways};
@@ -10,14 +10,14 @@ use crate::record::{
     CycleResult, FoldRecord, JumpRecord, MaxwellRecord, PathModes, PathRow, ReportedCycle,
     StretchRecord, Table,
 };
-use continuation::{EventKind, Problem, Settings, Tracer};
+use continuation::{EventKind, Problem, Settings};
 use shell_contact::device::{
     Balance, Cycle, CyclePoint, CycleSettings, Direction, Loading, RelaxationSettings, balance,
     free_start, travel,
 };
 use shell_contact::modes::{AsymmetricModes, WholeModes};
 use shell_contact::two_plates::stable_start;
-use shell_contact::{ContactBranch, Device, LoadedProblem, force_watches};
+use shell_contact::{ContactBranch, Device, LoadedProblem};
 use std::time::Instant;
 
 /// A cycle of mirror images.
@@ -97,10 +97,7 @@ impl WithPlates for Travel<'_, '_> {
         let clock = Instant::now();
         let name = &problem.parameters()[0].name;
         let settings = two_plates::settings(case, name);
-        let traced = Tracer::new(problem, name, x, p, settings.clone())
-            .and_then(|tracer| tracer.watching(&force_watches()))
-            .map(|tracer| ContactBranch::new(tracer.run(&mut listen(observer)), None))
-            .map_err(|detail| no_start(case, detail))?;
+        let (traced, _) = two_plates::follow(case, problem, (x, p), None, observer)?;
         let start = stable_start(problem, x, case.path.start)
             .map_err(|detail| not_held(case, detail.into()))?;
         let cycle = go(case, problem, &start, settings, observer)?;
@@ -138,9 +135,7 @@ impl WithPlates for Travel<'_, '_> {
             both_parities: true,
             balance: balance(problem, &cycle).ok(),
             reported: if reported {
-                ways::between_plates(&traced, &cycle, &|point| {
-                    problem.whole(&point.u, &problem.parameters_at(point.parameter)).ok()
-                })
+                ways::between_plates(problem, &traced, &cycle)
             } else {
                 ReportedCycle::default()
             },
@@ -174,10 +169,11 @@ impl Travelled<'_> {
         counted: &mut dyn FnMut(&CyclePoint) -> Option<PathModes>,
         shape: &dyn Fn(&CyclePoint) -> Option<Shape>,
     ) -> CycleResult {
-        let Travelled { case, traced, cycle, balance, .. } = self;
+        let Travelled { case, traced, cycle, balance, mut reported, .. } = self;
         let branch = &traced.branch;
         let row = |(step, point): (usize, &CyclePoint)| path_row(step, point, counted(point));
         let points: Vec<PathRow> = cycle.points.iter().enumerate().map(row).collect();
+        ways::count(&mut reported, cycle, &points);
         let examined = match (case.stability, self.both_parities) {
             (StabilityCase::Full { .. }, _) => Examined::AxisymmetricAndOthers,
             (_, true) => Examined::AxisymmetricBothParities,
@@ -210,7 +206,7 @@ impl Travelled<'_> {
             newton_iterations: cycle.newton_iterations + branch.statistics.newton_iterations,
             seconds: clock.elapsed().as_secs_f64(),
             pictures: pictures(&case.name, traced, (cycle, &points), examined, shape),
-            reported: self.reported,
+            reported,
             branch: self.branch,
             points,
         }

@@ -30,7 +30,9 @@ pub(super) fn form(branch: &Branch, event: &Event) -> FormRecord {
             criticality: word(crossing.criticality),
             multiplicity: Some(crossing.multiplicity),
             branches: Some(crossing.leaving.len()),
-            curvature: (crossing.shape == Shape::Pitchfork).then_some(crossing.curvature),
+            curvature: (crossing.shape == Shape::Pitchfork
+                && !crossing.curvature_error.is_infinite())
+            .then_some(crossing.curvature),
             ..base
         },
         Detail::Hopf(hopf) => FormRecord {

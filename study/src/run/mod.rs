@@ -112,17 +112,6 @@ pub enum RunError {
         /// The device.
         device: &'static str,
     },
-    /// A run that sees mirror-symmetric states only.
-    #[error(
-        "{case}: problem \"two-plates\": {run} knows mirror-symmetric states only: \
-         problem = \"contact\", with adhesion and film in [dimensionless]"
-    )]
-    MirrorOnly {
-        /// Name of the case.
-        case: String,
-        /// What was asked for.
-        run: &'static str,
-    },
     /// A problem without plates.
     #[error("{case}: problem \"{problem}\": a cycle needs plates: problem = \"contact\"")]
     NoPlates {

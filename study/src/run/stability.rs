@@ -79,6 +79,32 @@ impl Stability {
         insert(problem, branch, scanned)
     }
 
+    /// How a case wants modes without the symmetries of the branch to be counted, if it does.
+    pub(super) fn scan(case: &ResolvedCase) -> Option<ScanSettings> {
+        match case.stability {
+            StabilityCase::Full { max_n } => {
+                Some(ScanSettings { max_n, ..ScanSettings::default() })
+            }
+            StabilityCase::Axisymmetric => None,
+        }
+    }
+
+    /// A branch of mirror images from pole to pole, of which the modes with waves have been counted on
+    /// half the shell.
+    pub(super) fn of_symmetric<P: WholeShell>(
+        case: &ResolvedCase,
+        problem: &P,
+        traced: &mut ContactBranch,
+        waves: Scanned,
+    ) -> Stability {
+        let none = Stability { whole: true, ..Stability::default() };
+        let stopped = traced.branch.stopped.reason;
+        if case.stability == StabilityCase::Axisymmetric || stopped == StopReason::Interrupted {
+            return none;
+        }
+        Stability { whole: true, ..insert(problem, &mut traced.branch, waves) }
+    }
+
     /// The same of a branch from pole to pole, in its own parameter; its axisymmetric modes of both
     /// parities it counts itself.
     pub(super) fn of_whole<P: WholeShell>(

@@ -1,5 +1,6 @@
 //! The states along curves that a report shows.
 
+use super::two_plates::BetweenPlates;
 use crate::record::{Outline, State};
 use continuation::{Branch, Problem};
 use shell_contact::{ContactProblem, RingLoadProblem};
@@ -29,7 +30,7 @@ pub(super) fn between_plates(
     plate: f64,
 ) -> Option<State> {
     let outline = meridian_between_plates(problem, u, plate)?;
-    Some(State { point, plate, outline: outline.thinned(OUTLINE) })
+    Some(State { point, plate, plate_below: None, outline: outline.thinned(OUTLINE) })
 }
 
 /// The meridian of a shell between plates at a height.
@@ -42,6 +43,21 @@ pub(super) fn meridian_between_plates(
     let profile = problem.profile(u.get(..problem.dim())?, &parameters, FINE).ok()?;
     let (sigma, z) = (profile.sigma, profile.z);
     Some(Outline { sigma, z, pressure: profile.disjoining_pressure })
+}
+
+/// A shell from pole to pole between plates of their own; `None` where it is not admissible.
+pub(super) fn from_pole_to_pole<P: BetweenPlates>(
+    problem: &P,
+    point: usize,
+    u: &[f64],
+    parameter: f64,
+) -> Option<State> {
+    let p = problem.parameters_at(parameter);
+    let profile = problem.meridian(u, &p).ok()?;
+    let [plate, below] = problem.heights(u, &p).ok()?;
+    let outline =
+        Outline { sigma: profile.sigma, z: profile.z, pressure: profile.disjoining_pressure };
+    Some(State { point, plate, plate_below: Some(below), outline: outline.thinned(OUTLINE) })
 }
 
 /// The meridian of a ring-loaded shell at an angle in degrees.
@@ -67,6 +83,17 @@ pub(super) fn of_contact(problem: &ContactProblem, branch: &Branch, all: usize) 
     shown(points.len(), all, |at| points[at].event.is_some()).filter_map(state).collect()
 }
 
+/// The same from pole to pole.
+pub(super) fn of_two_plates<P: BetweenPlates>(
+    problem: &P,
+    branch: &Branch,
+    all: usize,
+) -> Vec<State> {
+    let points = &branch.points;
+    let state = |at: usize| from_pole_to_pole(problem, at, &points[at].u, points[at].p);
+    shown(points.len(), all, |at| points[at].event.is_some()).filter_map(state).collect()
+}
+
 /// The same of a ring-loaded shell, whose angles are in degrees: there is no film.
 pub(super) fn of_ring_load(problem: &RingLoadProblem, branch: &Branch, all: usize) -> Vec<State> {
     let points = &branch.points;
@@ -75,7 +102,7 @@ pub(super) fn of_ring_load(problem: &RingLoadProblem, branch: &Branch, all: usiz
         let parameters = problem.parameters_at(point.p.to_radians());
         let outline = meridian_in_ring(problem, &point.u, point.p)?;
         let plate = problem.observation(&point.u, &parameters).ok()?.ring_height;
-        Some(State { point: at, plate, outline: outline.thinned(OUTLINE) })
+        Some(State { point: at, plate, plate_below: None, outline: outline.thinned(OUTLINE) })
     };
     shown(points.len(), all, |at| points[at].event.is_some()).filter_map(state).collect()
 }

@@ -1,9 +1,10 @@
 //! The cases of a sweep on several threads.
 
 use super::family::{self, Wanted};
+use super::stability;
 use crate::case::ResolvedCase;
 use crate::record::phase::classify;
-use crate::record::{CaseRecord, Status, Table, TraceResult, events_table};
+use crate::record::{CaseRecord, LossRecord, Status, Table, TraceResult, events_table};
 use crate::sweep::SweepCase;
 use continuation::StopReason;
 use rayon::prelude::*;
@@ -74,7 +75,9 @@ fn present(index: usize, case: &ResolvedCase, result: TraceResult) -> Outcome {
     let complete = result.stopped_because.is_complete();
     let folds = result.events.iter().filter(|event| event.kind == "fold").count();
     let film = family::of(&case.problem).film();
-    let phase = film.map(|film| classify(&result.table, folds, film, complete));
+    // a class is that of the branch, whatever was counted beside it
+    let own = result.table.without("event", stability::KIND);
+    let phase = film.map(|film| classify(&own, folds, film, complete));
     let record = CaseRecord {
         case: index,
         status: if complete { Status::Finished } else { Status::StoppedEarly },
@@ -86,6 +89,8 @@ fn present(index: usize, case: &ResolvedCase, result: TraceResult) -> Outcome {
         newton_iterations: result.newton_iterations,
         seconds: result.seconds,
         phase,
+        stability: result.stability,
+        first_loss: LossRecord::first_of(&result),
     };
     let events = events_table(&result);
     Outcome { record, curve: result.table, events }

@@ -1,18 +1,20 @@
 //! The shell from pole to pole between two plates.
 
 use super::contact::{SAMPLES, drawn, event_record, loaded_path, no_start, path, row};
+use super::family::Wanted;
 use super::form::{StabilityColumns, certified};
 use super::resolution::{Resolved, height};
 use super::stability::Stability;
-use super::{Observer, RunError, listen};
+use super::{Observer, RunError, listen, states};
 use crate::case::{PlateCase, ResolvedCase, TwoPlatesCase};
 use crate::record::view::{self, Curve, Profile, Shape};
 use crate::record::{Cell, ContactRow, EventRecord, Pictures, Table, TraceResult};
 use continuation::{Branch, EvalError, Point, Tracer};
 use shell_contact::film::Film;
-use shell_contact::modes::WholeShell;
+use shell_contact::modes::{ScanSettings, Scanned, WholeShell};
 use shell_contact::two_plates::{
-    Plate, Support, SupportedProblem, TwoPlatesGroups, TwoPlatesProblem,
+    Plate, Support, SupportedProblem, SymmetricBranch, TwoPlatesGroups, TwoPlatesProblem,
+    trace_symmetric,
 };
 use shell_contact::{ContactBranch, Mesh, Observation, Resolution, force_watches};
 use std::time::Instant;
@@ -122,13 +124,15 @@ fn build(case: &TwoPlatesCase) -> Result<TwoPlatesProblem, shell_contact::Parame
 pub(super) fn run(
     case: &ResolvedCase,
     plates: &TwoPlatesCase,
+    wanted: Wanted,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
-    visit(case, plates, Trace { case, observer })?
+    visit(case, plates, Trace { case, wanted, observer })?
 }
 
 struct Trace<'t, 'o> {
     case: &'t ResolvedCase,
+    wanted: Wanted,
     observer: &'t mut Observer<'o>,
 }
 
@@ -136,22 +140,61 @@ impl WithPlates for Trace<'_, '_> {
     type Output = Result<TraceResult, RunError>;
 
     fn with<P: BetweenPlates>(self, problem: &P, x: &[f64], p: &[f64]) -> Self::Output {
-        let Trace { case, observer } = self;
+        let Trace { case, wanted, observer } = self;
         let clock = Instant::now();
-        let name = &problem.parameters()[0].name;
-        let branch = Tracer::new(problem, name, x, p, settings(case, name))
-            .and_then(|tracer| tracer.watching(&force_watches()))
-            .map(|tracer| tracer.run(&mut listen(observer)))
-            .map_err(|detail| no_start(case, detail))?;
-        let mut traced = ContactBranch::new(branch, None);
-        let stability = Stability::of_whole(case, problem, &mut traced, observer);
+        let scan = Stability::scan(case);
+        let (mut traced, waves) = follow(case, problem, (x, p), scan, observer)?;
+        let stability = match waves {
+            Some(waves) => Stability::of_symmetric(case, problem, &mut traced, waves),
+            None => Stability::of_whole(case, problem, &mut traced, observer),
+        };
         let seconds = clock.elapsed().as_secs_f64();
         let resolved = resolved(problem, &traced.branch);
-        let title = resolved.titled(&case.name);
-        let pictures = pictures(title, problem, &traced, &stability);
+        let mut shown = Pictures::default();
+        if wanted != Wanted::Nothing {
+            shown = pictures(resolved.titled(&case.name), problem, &traced, &stability);
+        }
+        if wanted == Wanted::States {
+            let all = traced.branch.points.len();
+            shown.states = states::of_two_plates(problem, &traced.branch, all);
+        }
         let resolution = resolved.record();
-        Ok(TraceResult { pictures, resolution, ..result(case, &traced, &stability, seconds) })
+        Ok(TraceResult {
+            pictures: shown,
+            resolution,
+            ..result(case, &traced, &stability, seconds)
+        })
     }
+}
+
+/// The branch that begins at the sphere. Of mirror images it is traced on half the shell, and has its modes
+/// with waves too where they are asked for.
+pub(super) fn follow<P: BetweenPlates>(
+    case: &ResolvedCase,
+    problem: &P,
+    (x, p): (&[f64], &[f64]),
+    scan: Option<ScanSettings>,
+    observer: &mut Observer<'_>,
+) -> Result<(ContactBranch, Option<Scanned>), RunError> {
+    let name = &problem.parameters()[0].name;
+    let settings = settings(case, name);
+    let start = case.path.start;
+    let images = trace_symmetric(problem, start, settings.clone(), scan, &mut listen(observer));
+    let (branch, waves) = match images {
+        Some(traced) => {
+            let SymmetricBranch { branch, waves } =
+                traced.map_err(|detail| no_start(case, detail))?;
+            (branch, Some(waves))
+        }
+        None => {
+            let branch = Tracer::new(problem, name, x, p, settings)
+                .and_then(|tracer| tracer.watching(&force_watches()))
+                .map(|tracer| tracer.run(&mut listen(observer)))
+                .map_err(|detail| no_start(case, detail))?;
+            (branch, None)
+        }
+    };
+    Ok((ContactBranch::new(branch, None), waves))
 }
 
 /// Whether the elements of either half resolve the films and the shell along a branch.

@@ -1,7 +1,8 @@
 //! A cycle for a report: the ways to and fro as curves with their states.
 
 use super::states;
-use crate::record::{ContactRow, ReportedCycle, Table, Way};
+use super::two_plates::BetweenPlates;
+use crate::record::{ContactRow, MODES, PathRow, ReportedCycle, Table, Way};
 use continuation::Problem;
 use shell_contact::device::{Cycle, CyclePoint};
 use shell_contact::{ContactBranch, ContactProblem, Device, Observation};
@@ -48,14 +49,32 @@ fn spans(cycle: &Cycle) -> Vec<Range<usize>> {
     [0..turn, begin..points.len()].to_vec()
 }
 
-/// Both ways of a cycle from pole to pole, without states.
-pub(super) fn between_plates(
+/// Both ways of a cycle from pole to pole, and the states along the complete branch.
+pub(super) fn between_plates<P: BetweenPlates>(
+    problem: &P,
     traced: &ContactBranch,
     cycle: &Cycle,
-    seen: &dyn Fn(&CyclePoint) -> Option<Observation>,
 ) -> ReportedCycle {
-    let way = |span| way(traced, cycle, span, seen);
-    ReportedCycle { ways: spans(cycle).into_iter().map(way).collect(), branch: Vec::new() }
+    let all = traced.branch.points.len() + cycle.points.len();
+    let seen =
+        |point: &CyclePoint| problem.whole(&point.u, &problem.parameters_at(point.parameter)).ok();
+    ReportedCycle {
+        ways: spans(cycle)
+            .into_iter()
+            .map(|span| {
+                let points = &cycle.points[span.clone()];
+                let way = way(traced, cycle, span, &seen);
+                let special =
+                    |at: usize| points[at].event.is_some() || way.jumps.contains(&(at + 1));
+                let shown = states::shown(points.len(), all, special);
+                let state = |at: usize| {
+                    states::from_pole_to_pole(problem, at, &points[at].u, points[at].parameter)
+                };
+                Way { states: shown.filter_map(state).collect(), ..way }
+            })
+            .collect(),
+        branch: states::of_two_plates(problem, &traced.branch, all),
+    }
 }
 
 fn way(
@@ -82,7 +101,19 @@ fn way(
     Way { label, table, jumps, states: Vec::new() }
 }
 
-/// One state of the path, which is stable, in the columns of a branch.
+/// Puts what the states of the path are unstable to beside those of its ways.
+pub(super) fn count(reported: &mut ReportedCycle, cycle: &Cycle, path: &[PathRow]) {
+    if path.iter().all(|row| row.modes.is_none()) {
+        return;
+    }
+    for (way, span) in reported.ways.iter_mut().zip(spans(cycle)) {
+        let cells = path[span].iter().map(|row| row.modes.map(|modes| modes.cells().to_vec()));
+        let cells = cells.map(Option::unwrap_or_default).collect();
+        way.table = way.table.beside(&MODES, cells);
+    }
+}
+
+/// One state of the path, in the columns of a branch: stable to the modes that the path follows.
 fn row(
     traced: &ContactBranch,
     at: usize,

@@ -8,7 +8,10 @@ use crate::case::error::{CaseError, Complaint};
 use crate::case::name::{own_name, plain_name};
 use crate::case::reader::{Reader, Section};
 use crate::case::resolve::resolve;
-use crate::case::{CatalogueEntry, LoadError, ResolvedCase, SWEEPS, load as load_case, source};
+use crate::case::{
+    CatalogueEntry, LoadError, LoadedCase, ProblemCase, ResolvedCase, SWEEPS, StabilityCase,
+    load as load_case, source,
+};
 use crate::closest::closest;
 use std::path::{Path, PathBuf};
 
@@ -131,9 +134,13 @@ fn from(
         value: node.raw.clone(),
         error: Box::new(error),
     };
-    let case = load_case(&path, &[], catalogue).map_err(refused)?.case;
-    let mut tree = document::parse(value, &case.to_toml(), &[]).map_err(refused)?;
+    let loaded = load_case(&path, &[], catalogue).map_err(refused)?;
+    let mut tree = document::parse(value, &loaded.case.to_toml(), &[]).map_err(refused)?;
     tree.remove("name");
+    if !loaded.says_stability {
+        // of a sweep it has another default
+        tree.remove("stability");
+    }
     forget_lines(&mut tree);
     Ok(tree)
 }
@@ -203,8 +210,9 @@ fn expand(
         }
         let case = match resolve(file, name, &own, catalogue) {
             Ok(loaded) => {
-                first.get_or_insert_with(|| loaded.case.clone());
-                Ok(loaded.case)
+                let case = of_many(loaded);
+                first.get_or_insert_with(|| case.clone());
+                Ok(case)
             }
             Err(errors) if errors.iter().all(is_about_a_value) => {
                 let reason = LoadError::Invalid(errors.clone()).to_string();
@@ -227,6 +235,16 @@ fn expand(
         base: first.to_toml().lines().filter(|line| !line.is_empty()).map(str::to_owned).collect(),
     };
     Ok(Sweep { plan, cases, inputs: Vec::new() })
+}
+
+/// A case as one of many: of mirror images only modes of their own symmetry are counted, unless
+/// somebody says `[stability]`, for the others cost twice the branch.
+fn of_many(loaded: LoadedCase) -> ResolvedCase {
+    let LoadedCase { mut case, says_stability, .. } = loaded;
+    if !says_stability && matches!(case.problem, ProblemCase::Contact(_)) {
+        case.stability = StabilityCase::Axisymmetric;
+    }
+    case
 }
 
 /// The name of a case: that of the sweep with its number.

@@ -3,7 +3,7 @@
 use super::read::{SweepError, sweep};
 use super::*;
 use crate::case::catalogue;
-use crate::case::{ProblemCase, document, load as load_case};
+use crate::case::{ProblemCase, StabilityCase, document, load as load_case};
 use std::path::Path;
 
 const BASE: &str = r#"problem = "contact"
@@ -210,4 +210,32 @@ fn a_shipped_sweep_has_a_name_and_is_no_case() {
     assert_eq!((&phase.plan.name[..], phase.cases.len()), ("phase", 17 * 17));
     let error = load_case(Path::new("phase"), &[], &catalogue()).unwrap_err().to_string();
     assert!(error.starts_with("phase, line ") && error.contains("for \"arclen sweep\""), "{error}");
+}
+
+#[test]
+fn modes_without_symmetry_are_counted_in_a_sweep_where_somebody_says_so() {
+    let vary = "[[vary]]\nkey = \"dimensionless.adhesion\"\nvalues = [1e-4, 1e-3]\n";
+    let scans = |text: &str| -> Vec<StabilityCase> {
+        let sweep = read(text).unwrap_or_else(|error| panic!("{error}"));
+        sweep.cases.into_iter().map(|case| case.case.unwrap().stability).collect()
+    };
+    let full = StabilityCase::default();
+    let own = StabilityCase::Axisymmetric;
+    let over = |case: &str, table: &str| format!("case = \"{case}\"\n{table}{vary}");
+    for (text, expected) in [
+        (format!("{BASE}{vary}"), own),
+        (format!("{BASE}[stability]\nscan = \"full\"\n{vary}"), full),
+        (format!("{BASE}[stability]\nscan = \"axisymmetric\"\n{vary}"), own),
+        (format!("{BASE}[stability]\nmax_n = 12\n{vary}"), StabilityCase::Full { max_n: 12 }),
+        // a base that says nothing of it has the default of a sweep, not that of a trace
+        (over("fig12", ""), own),
+        (over("fig12", "[stability]\nscan = \"full\"\n"), full),
+    ] {
+        assert_eq!(scans(&text), [expected; 2], "{text}");
+    }
+    let both = "[[vary]]\nkey = \"stability.scan\"\nvalues = [\"full\", \"axisymmetric\"]\n";
+    assert_eq!(scans(&format!("{BASE}{both}")), [full, own]);
+    // a shell from pole to pole has its trace's
+    let plates = "[[vary]]\nkey = \"plate.top.adhesion\"\nvalues = [1e-3, 2e-3]\n";
+    assert_eq!(scans(&format!("case = \"two-plates\"\n{plates}")), [full; 2]);
 }

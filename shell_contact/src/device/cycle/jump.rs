@@ -7,8 +7,9 @@ use super::{CyclePoint, Direction, End, JUMP, Jump, Traveller};
 use continuation::{EvalError, NewtonSettings, StopReason, newton};
 
 /// How far beyond a branch point states of other branches are sought: the nearer one is nearer to it
-/// by the square root of their ratio at least, unless it is a jump away.
-const BEYOND: [f64; 2] = [1e-6, 1e-8];
+/// by the square root of their ratio at least, unless it is a jump away. Of a weak film the modes that turn are
+/// so soft that only farther states can be told to be stable.
+const BEYOND: [[f64; 2]; 4] = [[1e-6, 1e-8], [1e-5, 1e-7], [1e-4, 1e-6], [1e-3, 1e-5]];
 /// States so near to a branch point, in `R0`, are no jump away: it is known to the root of rounding.
 const AT_POINT: f64 = 1e-6;
 
@@ -16,11 +17,16 @@ impl<P: Loading> Traveller<'_, P> {
     /// At a branch point: goes on without a jump if beyond it there are stable states of another
     /// branch, ever nearer to it, and records the first of them.
     pub(super) fn pass(&mut self, direction: Direction, target: f64) -> bool {
+        BEYOND.into_iter().any(|beyond| self.pass_by(direction, target, beyond))
+    }
+
+    /// The same with states sought at these distances.
+    fn pass_by(&mut self, direction: Direction, target: f64, steps: [f64; 2]) -> bool {
         let problem = self.problem;
         let (at, ahead) = (self.parameter, target - self.parameter);
         let mut distances = [0.0; 2];
         let mut beyond = Vec::new();
-        for (distance, step) in distances.iter_mut().zip(BEYOND) {
+        for (distance, step) in distances.iter_mut().zip(steps) {
             if ahead.abs() < step {
                 return false;
             }
@@ -38,7 +44,7 @@ impl<P: Loading> Traveller<'_, P> {
             return false;
         }
         let before = std::mem::replace(&mut self.x, beyond);
-        self.parameter = at + BEYOND[0].copysign(ahead);
+        self.parameter = at + steps[0].copysign(ahead);
         match self.landing(direction) {
             Ok(point) => {
                 self.cycle.points.push(CyclePoint { event: None, ..point });

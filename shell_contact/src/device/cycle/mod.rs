@@ -439,8 +439,9 @@ impl<'p, P: Loading> Traveller<'p, P> {
             return stop(StopReason::Domain, "the plate flew away: no state holds the load");
         }
         let problem = self.problem;
+        let p = problem.parameters_at(self.parameter);
         let back = self.is_first(&self.x)
-            || problem.mirrored(&self.x).is_some_and(|image| self.is_first(&image));
+            || problem.mirrored(&self.x, &p).is_some_and(|image| self.is_first(&image));
         let bounded = self.cycle.jumps.iter().all(|jump| jump.dissipated.is_some());
         self.cycle.closed = back && bounded;
         match (back, bounded) {

@@ -1,6 +1,7 @@
 //! `sweep.json`: the cases of a sweep, their values, and how they went.
 
-use super::record::{CaseRecord, Status};
+use super::record::{CaseRecord, LossRecord, Status};
+use crate::record::events::StabilityOf;
 use crate::sweep::{Plan, Setting};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
@@ -76,6 +77,13 @@ pub fn sweep_json(result: &SweepResult) -> Result<String, serde_json::Error> {
                 points: record.points,
                 special_points: record.special_points,
                 class: record.phase.map(|phase| phase.class.to_string()),
+                stability: record.stability.as_ref().map(StabilityOf),
+                first_loss: match record.stability {
+                    Some(stability) if stability.full => {
+                        Some(record.first_loss.as_ref().map(|loss| LossOf(&plan.parameter, loss)))
+                    }
+                    _ => None,
+                },
                 certified: record.certified,
                 newton_iterations: record.newton_iterations,
                 seconds: record.seconds,
@@ -131,9 +139,30 @@ struct Case<'a> {
     special_points: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     class: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stability: Option<StabilityOf<'a>>,
+    /// Null where every mode was counted and none is lost.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    first_loss: Option<Option<LossOf<'a>>>,
     certified: Option<bool>,
     newton_iterations: usize,
     seconds: f64,
+}
+
+/// A loss of symmetry with the name of its parameter.
+struct LossOf<'a>(&'a str, &'a LossRecord);
+
+impl Serialize for LossOf<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let LossOf(parameter, loss) = self;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry(parameter, &loss.parameter)?;
+        map.serialize_entry("force", &loss.force)?;
+        map.serialize_entry("deformation", &loss.deformation)?;
+        map.serialize_entry("n", &loss.n)?;
+        map.serialize_entry("parity", &loss.parity)?;
+        map.end()
+    }
 }
 
 /// The values of a case by their keys.

@@ -5,5 +5,5 @@ mod record;
 mod summary;
 
 pub use json::{SweepResult, sweep_json};
-pub use record::{CaseRecord, Status, events_table};
+pub use record::{CaseRecord, LossRecord, Status, events_table};
 pub use summary::sweep_summary;

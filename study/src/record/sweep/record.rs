@@ -1,7 +1,7 @@
 //! How a case of a sweep went, and its special points as a table.
 
 use crate::record::phase::Phase;
-use crate::record::{Cell, Table, TraceResult};
+use crate::record::{Cell, StabilityRecord, Table, TraceResult};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -50,6 +50,43 @@ pub struct CaseRecord {
     pub seconds: f64,
     /// What the shell does, for contact cases.
     pub phase: Option<Phase>,
+    /// Which modes were counted; `None` where that has no meaning.
+    #[serde(default)]
+    pub stability: Option<StabilityRecord>,
+    /// Where a mode without the symmetries of the branch first becomes unstable, if such were counted.
+    #[serde(default)]
+    pub first_loss: Option<LossRecord>,
+}
+
+/// A special point at which a mode without the symmetries of its branch becomes unstable.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LossRecord {
+    /// Waves around the axis.
+    pub n: usize,
+    /// `symmetric` or `antisymmetric` about the equator, or `none`.
+    pub parity: String,
+    /// The continued parameter.
+    pub parameter: Option<f64>,
+    /// Force on one plate.
+    pub force: Option<f64>,
+    /// How far the plates have come since the force was zero.
+    pub deformation: Option<f64>,
+}
+
+impl LossRecord {
+    /// The first one along a branch; what is unstable from the start on is none.
+    pub fn first_of(result: &TraceResult) -> Option<LossRecord> {
+        result.events.iter().find_map(|event| {
+            let mode = event.mode.filter(|mode| mode.after > mode.before)?;
+            Some(LossRecord {
+                n: mode.n,
+                parity: mode.parity.to_owned(),
+                parameter: event.parameter,
+                force: event.force,
+                deformation: event.deformation,
+            })
+        })
+    }
 }
 
 impl CaseRecord {
@@ -66,6 +103,8 @@ impl CaseRecord {
             newton_iterations: 0,
             seconds: 0.0,
             phase: None,
+            stability: None,
+            first_loss: None,
         }
     }
 }
@@ -79,6 +118,14 @@ pub fn events_table(result: &TraceResult) -> Table {
         let first = result.events.first();
         first.iter().flat_map(|event| event.observables.iter().map(|(name, _)| &**name)).collect()
     };
+    // of a shell between plates of its own `shift` is the only observable
+    let plates: &[&str] = match result.stability {
+        Some(_) if !contact => &["force", "deformation", "energy_total"],
+        _ => &[],
+    };
+    let scanned = result.stability.is_some_and(|stability| stability.full);
+    let modes: &[&str] =
+        if scanned { &["n", "parity", "modes_before", "modes_after"] } else { &[] };
     let columns: Vec<&str> = ["kind", &result.parameter]
         .into_iter()
         .chain(names.iter().copied())
@@ -96,6 +143,8 @@ pub fn events_table(result: &TraceResult) -> Table {
             "lyapunov",
             "lyapunov_error",
         ])
+        .chain(plates.iter().copied())
+        .chain(modes.iter().copied())
         .collect();
     let mut table = Table::with_columns(&columns);
     for event in &result.events {
@@ -123,6 +172,13 @@ pub fn events_table(result: &TraceResult) -> Table {
             form.lyapunov.into(),
             form.lyapunov_error.into(),
         ]);
+        if !plates.is_empty() {
+            row.extend([event.force, event.deformation, event.energy_total].map(Cell::from));
+        }
+        if let (true, Some(mode)) = (scanned, event.mode) {
+            row.extend([mode.n.into(), mode.parity.into()]);
+            row.extend([mode.before, mode.after].map(Cell::from));
+        }
         table.push(row);
     }
     table

@@ -1,7 +1,8 @@
 //! What people see at the end of a sweep.
 
 use super::json::SweepResult;
-use super::record::Status;
+use super::record::{CaseRecord, Status};
+use crate::record::StabilityRecord;
 use crate::record::phase::Class;
 use crate::record::summary::{aligned, count};
 use std::fmt::Write as _;
@@ -9,6 +10,37 @@ use std::path::Path;
 
 /// Cases with a reason that are named.
 const NAMED: usize = 10;
+
+/// Which modes were counted along the branches of shells, and how many lose stability to those that
+/// break the symmetry.
+fn stability(records: &[CaseRecord]) -> String {
+    let mut out = String::new();
+    let scans: Vec<StabilityRecord> =
+        records.iter().filter_map(|record| record.stability).collect();
+    let (full, own): (Vec<_>, Vec<_>) = scans.into_iter().partition(|scan| scan.full);
+    let (all, only) = (!full.is_empty(), !own.is_empty());
+    for scans in [own, full] {
+        let number = scans.len();
+        let Some(scan) = scans.into_iter().reduce(|all, one| all.and(&one)) else { continue };
+        let of = if all && only {
+            format!("{}, ", count(number, "case", "cases"))
+        } else {
+            String::new()
+        };
+        out += &scan.text().replace("stability: ", &format!("stability: {of}"));
+    }
+    if all {
+        let lost = records.iter().filter_map(|record| record.first_loss.as_ref());
+        let (waves, mirror): (Vec<_>, Vec<_>) = lost.partition(|loss| loss.n > 0);
+        let _ = writeln!(
+            out,
+            "first loss of symmetry along the branch: with waves around the axis in {}, without in {}",
+            count(waves.len(), "case", "cases"),
+            mirror.len(),
+        );
+    }
+    out
+}
 
 /// The summary; `folder` is where the files went, if they went anywhere.
 pub fn sweep_summary(result: &SweepResult, folder: Option<&Path>) -> String {
@@ -25,6 +57,7 @@ pub fn sweep_summary(result: &SweepResult, folder: Option<&Path>) -> String {
         out.push_str(&aligned(&lines));
         out.push('\n');
     }
+    out.push_str(&stability(records));
     let troubled = records.iter().filter(|record| record.status != Status::Finished);
     for record in troubled.clone().take(NAMED) {
         let reason = record.reason.as_deref().or(record.stopped_because.as_deref());

@@ -6,7 +6,7 @@ use crate::record::{CycleResult, DiagramResult, Outline, TraceResult};
 use crate::run::diagram::{
     DiagramObserver, DiagramProgress, Presented, Work, result, with_asymmetric,
 };
-use crate::run::map::{Attempt, MapError, Second, Task};
+use crate::run::map::{Attempt, MapError, Second, Task, two_plates as map};
 use crate::run::stability::Stability;
 use crate::run::two_plates::{BetweenPlates, WithPlates};
 use crate::run::{Observer, RunError, asymmetric, contact, cycle, two_plates};
@@ -22,10 +22,10 @@ impl Family for TwoPlatesCase {
     fn trace(
         &self,
         case: &ResolvedCase,
-        _: Wanted,
+        wanted: Wanted,
         observer: &mut Observer<'_>,
     ) -> Result<TraceResult, RunError> {
-        two_plates::run(case, self, observer)
+        two_plates::run(case, self, wanted, observer)
     }
 
     fn diagram(
@@ -58,12 +58,17 @@ impl Family for TwoPlatesCase {
         two_plates::visit(case, self, travel)?
     }
 
-    fn second_parameter(&self, case: &ResolvedCase, _: &str) -> Result<Second, MapError> {
-        Err(mirror_only(case))
+    fn second_parameter(&self, _: &ResolvedCase, key: &str) -> Result<Second, MapError> {
+        map::second(self, key)
     }
 
-    fn attempt(&self, task: &Task<'_>, _: f64, _: &mut Observer<'_>) -> Result<Attempt, MapError> {
-        Err(mirror_only(task.case))
+    fn attempt(
+        &self,
+        task: &Task<'_>,
+        at: f64,
+        observer: &mut Observer<'_>,
+    ) -> Result<Attempt, MapError> {
+        map::attempt(task, self, at, observer)
     }
 
     fn meridian(
@@ -74,11 +79,6 @@ impl Family for TwoPlatesCase {
     ) -> Result<Option<Outline>, RunError> {
         two_plates::visit(case, self, Meridian { u, parameter })
     }
-}
-
-/// The refusal of a case from pole to pole.
-fn mirror_only(case: &ResolvedCase) -> MapError {
-    RunError::MirrorOnly { case: case.name.clone(), run: "a map" }.into()
 }
 
 /// The meridian of a state, from pole to pole.

@@ -10,6 +10,7 @@ mod curves;
 mod cycles;
 mod range;
 pub(super) mod ring_load;
+pub(super) mod two_plates;
 
 use super::{Observer, RunError};
 use crate::case::ResolvedCase;
