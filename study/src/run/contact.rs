@@ -32,17 +32,7 @@ pub(super) fn run(
     contact: &ContactCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
-    let (traced, stability) = scanned(case, contact, observer)?;
-    let Traced { problem, branch, maxwell, seconds } = traced;
-    let errors = MeshErrors::of(&problem, &branch);
-    let resolved = Resolved::of(&problem, &branch).with(&errors, &contact.mesh);
-    let pictures = pictures(&resolved.titled(&case.name), &problem, &branch, &stability);
-    let maxwell = Some(maxwell);
-    let mut result = examined(case, &branch, seconds, &stability, Some(&resolved));
-    for (k, event) in result.events.iter_mut().enumerate() {
-        event.mesh_error = errors.event(k);
-    }
-    Ok(TraceResult { pictures, maxwell, ..result })
+    pictured(case, contact, false, observer)
 }
 
 /// The same with the states along the branch.
@@ -51,19 +41,29 @@ pub(super) fn run_reported(
     contact: &ContactCase,
     observer: &mut Observer<'_>,
 ) -> Result<TraceResult, RunError> {
+    pictured(case, contact, true, observer)
+}
+
+fn pictured(
+    case: &ResolvedCase,
+    contact: &ContactCase,
+    with_states: bool,
+    observer: &mut Observer<'_>,
+) -> Result<TraceResult, RunError> {
     let (traced, stability) = scanned(case, contact, observer)?;
     let Traced { problem, branch, maxwell, seconds } = traced;
-    let states = of_contact(&problem, &branch.branch, branch.branch.points.len());
     let errors = MeshErrors::of(&problem, &branch);
     let resolved = Resolved::of(&problem, &branch).with(&errors, &contact.mesh);
-    let title = resolved.titled(&case.name);
-    let pictures = Pictures { states, ..pictures(&title, &problem, &branch, &stability) };
-    let maxwell = Some(maxwell);
-    let mut result = examined(case, &branch, seconds, &stability, Some(&resolved));
+    let mut pictures = pictures(&resolved.titled(&case.name), &problem, &branch, &stability);
+    if with_states {
+        pictures.states = of_contact(&problem, &branch.branch, branch.branch.points.len());
+    }
+    let result = examined(case, &branch, seconds, &stability, Some(&resolved));
+    let mut result = TraceResult { pictures, maxwell: Some(maxwell), ..result };
     for (k, event) in result.events.iter_mut().enumerate() {
         event.mesh_error = errors.event(k);
     }
-    Ok(TraceResult { pictures, maxwell, ..result })
+    Ok(result)
 }
 
 /// The same without what pictures show, and without estimates of what the elements add.
