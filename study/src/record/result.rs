@@ -403,6 +403,8 @@ pub struct MeshErrorRecord {
     pub at: f64,
     /// Of the plate distance of folds and zeros of the force, the worst.
     pub z0: Option<f64>,
+    /// Of the extreme forces, the worst.
+    pub extremum: Option<f64>,
     /// How many points were looked at for the force.
     pub samples: usize,
 }
@@ -442,10 +444,11 @@ impl ResolutionRecord {
     }
 
     /// Whether the mesh's error is below what was asked for, at all places that were looked at; `None` where nothing
-    /// was asked for, or nothing is known.
+    /// was asked for, or nothing is known: of a branch that is not resolved no estimate holds.
     pub fn meets_tolerance(&self) -> Option<bool> {
         let (tolerance, error) = (self.tolerance?, self.mesh_error?);
-        Some(error.force.max(error.z0.unwrap_or(0.0)) <= tolerance)
+        let special = [error.z0, error.extremum].into_iter().flatten();
+        self.enough.then(|| special.fold(error.force, f64::max) <= tolerance)
     }
 
     /// What was asked for, and whether it was met.

@@ -190,3 +190,35 @@ fn special_points_of_a_case_in_physical_units_have_those_too() {
     let plain = events_json(&case("fig12"), &example()).unwrap();
     assert!(!plain.contains("physical"));
 }
+
+#[test]
+fn a_tolerance_is_met_at_every_place_that_is_known_or_unknown() {
+    let error =
+        |force, z0, extremum| Some(MeshErrorRecord { force, at: 0.9, z0, extremum, samples: 12 });
+    let met = |tolerance, enough, mesh_error| {
+        let record = ResolutionRecord {
+            per_film_length: 2.0,
+            per_wavelength: 20.0,
+            needed: [1.0, 15.0],
+            at: 0.9,
+            parameter: "z0",
+            enough,
+            elements: 100,
+            wanted: 90,
+            mesh_error,
+            tolerance,
+        };
+        record.meets_tolerance()
+    };
+    for (tolerance, enough, mesh_error, expected) in [
+        (Some(1e-6), true, error(5e-7, None, None), Some(true)),
+        (Some(1e-6), true, error(2e-6, None, None), Some(false)),
+        (Some(1e-6), true, error(5e-7, Some(2e-6), None), Some(false)),
+        (Some(1e-6), true, error(5e-7, Some(1e-9), Some(2e-6)), Some(false)),
+        (Some(1e-6), true, None, None),
+        (Some(1e-6), false, error(5e-7, None, None), None),
+        (None, true, error(5e-7, None, None), None),
+    ] {
+        assert_eq!(met(tolerance, enough, mesh_error), expected, "{tolerance:?} {mesh_error:?}");
+    }
+}

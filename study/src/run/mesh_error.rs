@@ -56,11 +56,14 @@ impl MeshErrors {
                 worst = Some((error, index));
             }
         }
-        let places = events.iter().flatten().filter_map(|event| event.z0);
+        let known = || events.iter().flatten();
+        let places = known().filter_map(|event| event.z0);
+        let extremes = known().filter_map(|event| event.force);
         let record = worst.map(|(force, index)| MeshErrorRecord {
             force,
             at: height(&branch.points[index]),
             z0: places.max_by(f64::total_cmp),
+            extremum: extremes.max_by(f64::total_cmp),
             samples: looked_at,
         });
         MeshErrors { events, record }
