@@ -50,7 +50,7 @@ pub(super) fn bare(key: &str) -> &str {
 }
 
 /// The refusal of `b` with a law that has none.
-pub(super) fn without_share(law: Law, key: String, allowed: Vec<String>) -> MapError {
+fn without_share(law: Law, key: String, allowed: Vec<String>) -> MapError {
     let problem = format!("a shell of the law {law}");
     MapError::UnknownKey { key, problem, allowed, suggestion: None }
 }
@@ -77,18 +77,26 @@ pub(in crate::run) fn second(contact: &ContactCase, key: &str) -> Result<Second,
         return Ok(Second { key: name.to_string(), value: *value, usual, limits });
     }
     let known = |name: &&str| value_mut(&mut contact.clone(), name).is_some();
-    let allowed: Vec<&str> = KEYS.into_iter().filter(known).collect();
-    let suggestion = closest(name, allowed.iter().copied()).map(str::to_string);
-    let allowed = allowed.into_iter().map(str::to_string).collect();
-    let key = key.to_string();
-    Err(match name {
-        "z0" => MapError::SameParameter { key, allowed },
+    let allowed = KEYS.into_iter().filter(known).collect();
+    Err(refusal((key, name), "z0", law, "the contact problem", allowed))
+}
+
+/// Why a key, as it was given and by its bare name, is no second parameter beside the problem's `own` one.
+pub(super) fn refusal(
+    (key, name): (&str, &str),
+    own: &str,
+    law: Law,
+    problem: &str,
+    allowed: Vec<&str>,
+) -> MapError {
+    let suggestion = closest(name, allowed.iter().copied()).map(str::to_owned);
+    let allowed = allowed.into_iter().map(str::to_owned).collect();
+    let key = key.to_owned();
+    match name {
+        name if name == own => MapError::SameParameter { key, allowed },
         "b" => without_share(law, key, allowed),
-        _ => {
-            let problem = "the contact problem".to_string();
-            MapError::UnknownKey { key, problem, allowed, suggestion }
-        }
-    })
+        _ => MapError::UnknownKey { key, problem: problem.to_owned(), allowed, suggestion },
+    }
 }
 
 /// The base branch with the second parameter `at` a value, and its curves.

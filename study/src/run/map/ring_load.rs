@@ -1,10 +1,9 @@
 //! Maps of the ring-loaded shell: the contact angle and a moment at the ring, or a number of the case.
 
-use super::contact::{bare, limits, share_mut, without_share};
+use super::contact::{bare, limits, refusal, share_mut};
 use super::curves::{Found, curves};
 use super::{Attempt, MapError, Second, Task};
 use crate::case::{PathCase, ResolvedCase, RingLoadCase};
-use crate::closest::closest;
 use crate::run::ring_load::{Start, in_degrees, no_start, path, start, watches};
 use crate::run::{Observer, listen};
 use continuation::Tracer;
@@ -40,18 +39,8 @@ pub(in crate::run) fn second(ring: &RingLoadCase, key: &str) -> Result<Second, M
         return Ok(Second { key: name.to_owned(), value: *value, usual, limits });
     }
     let known = |name: &&str| *name == MOMENT || value_mut(&mut ring.clone(), name).is_some();
-    let allowed: Vec<&str> = KEYS.into_iter().filter(known).collect();
-    let suggestion = closest(name, allowed.iter().copied()).map(str::to_owned);
-    let allowed = allowed.into_iter().map(str::to_owned).collect();
-    let key = key.to_owned();
-    Err(match name {
-        "alpha" => MapError::SameParameter { key, allowed },
-        "b" => without_share(law, key, allowed),
-        _ => {
-            let problem = "the ring-load problem".to_owned();
-            MapError::UnknownKey { key, problem, allowed, suggestion }
-        }
-    })
+    let allowed = KEYS.into_iter().filter(known).collect();
+    Err(refusal((key, name), "alpha", law, "the ring-load problem", allowed))
 }
 
 /// The base branch with the second parameter `at` a value, and its curves.

@@ -1,11 +1,10 @@
 //! Maps of the shell from pole to pole: half the distance of its plates, or the base of a spring, and one
 //! of its other parameters, by plate where the film has it.
 
-use super::contact::{bare, limits, share_mut, without_share};
+use super::contact::{bare, limits, refusal, share_mut};
 use super::curves::curves;
 use super::{Attempt, MapError, Second, Task};
 use crate::case::TwoPlatesCase;
-use crate::closest::closest;
 use crate::run::two_plates::{BetweenPlates, WithPlates, follow, visit};
 use crate::run::{Observer, RunError};
 
@@ -61,18 +60,8 @@ pub(in crate::run) fn second(plates: &TwoPlatesCase, key: &str) -> Result<Second
         return Ok(Second { key: given.to_owned(), value: *value, usual, limits });
     }
     let known = |key: &&str| value_mut(&mut plates.clone(), name(key)).is_some();
-    let allowed: Vec<&str> = KEYS.into_iter().filter(known).collect();
-    let suggestion = closest(key, allowed.iter().copied()).map(str::to_owned);
-    let allowed = allowed.into_iter().map(str::to_owned).collect();
-    let key = key.to_owned();
-    Err(match given {
-        own if own == plates.parameter() => MapError::SameParameter { key, allowed },
-        "b" => without_share(law, key, allowed),
-        _ => {
-            let problem = "the shell between two plates".to_owned();
-            MapError::UnknownKey { key, problem, allowed, suggestion }
-        }
-    })
+    let allowed = KEYS.into_iter().filter(known).collect();
+    Err(refusal((key, bare(key)), plates.parameter(), law, "the shell between two plates", allowed))
 }
 
 /// The base branch with the second parameter `at` a value, and its curves.
