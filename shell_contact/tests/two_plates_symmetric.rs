@@ -195,6 +195,31 @@ fn a_soft_spring_passes_the_fold_beside_its_pitchfork() {
 }
 
 /// Whoever ends the work keeps the points that there are, with their own counts.
+/// Under a soft spring its base moves far while the plate hardly does: errors are those of the base. Where counts change
+/// does not depend on the steps.
+#[test]
+fn places_under_a_soft_spring_are_within_their_errors() {
+    for stiffness in [3.0, 6.0, 30.0] {
+        let shell = whole(80, Law::Hooke, FIG12);
+        let support = Support { spring: Some(stiffness), held: false };
+        let problem = SupportedProblem::new(&shell, support).unwrap();
+        let scan = ScanSettings { max_n: 4, ..ScanSettings::default() };
+        let places = |max_step: f64| -> Vec<(f64, f64)> {
+            let path = Settings { max_step: Some(max_step), ..settings(0.4) };
+            let go_on = &mut |_: &_| ControlFlow::Continue(());
+            let found = trace_symmetric(&problem, 1.5, path, Some(scan), go_on).unwrap().unwrap();
+            let pitchforks = found.branch.events_of(&EventKind::BranchPoint);
+            let pitchforks = pitchforks.map(|event| (event.p, event.error_estimate));
+            pitchforks.chain(found.waves.events.iter().map(|w| (w.z0, w.error_estimate))).collect()
+        };
+        let (one, other) = (places(0.02), places(0.013));
+        assert!(one.len() == other.len() && !one.is_empty());
+        for ((a, a_error), (b, b_error)) in one.iter().zip(&other) {
+            assert!((a - b).abs() <= a_error + b_error, "{a} ± {a_error:e}, {b} ± {b_error:e}");
+        }
+    }
+}
+
 #[test]
 fn what_is_interrupted_keeps_its_points() {
     let problem = whole(40, Law::Hooke, FIG12);

@@ -48,6 +48,8 @@ pub struct SymmetryBreaking {
     pub modes_after: usize,
     /// Width in `z0` of the interval at whose ends the counts differ.
     pub error_estimate: f64,
+    /// Unknowns and plate distance at the other end of that interval.
+    pub other_end: (Vec<f64>, f64),
     /// Eigenvalue of the mode at this state, zero but for the error.
     pub eigenvalue: f64,
     /// The mode.

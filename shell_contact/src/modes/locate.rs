@@ -279,7 +279,7 @@ impl<C: Counter> Locator<C> {
             let Some(at) = self.enclose(chord, classes, (from, count), settings) else { return };
             let class = &classes[0];
             let [lo, hi] = [&class.samples[at], &class.samples[at + 1]];
-            let nearer = if lo.value.abs() < hi.value.abs() { lo } else { hi };
+            let (nearer, other) = if lo.value.abs() < hi.value.abs() { (lo, hi) } else { (hi, lo) };
             let (shape, parity) = self.counter.shape_of(class.n, class.parity, &nearer.mode);
             events.push(SymmetryBreaking {
                 after_point: chord.after_point,
@@ -291,6 +291,7 @@ impl<C: Counter> Locator<C> {
                 modes_before: lo.count,
                 modes_after: hi.count,
                 error_estimate: (hi.z0 - lo.z0).abs().max(f64::EPSILON),
+                other_end: (self.states[other.state].u.clone(), other.z0),
                 eigenvalue: nearer.value,
                 mode_shape: shape,
             });

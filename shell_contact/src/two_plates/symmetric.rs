@@ -260,6 +260,9 @@ impl<P: WholeShell> Lift<'_, P> {
             for (k, one) in here.iter().enumerate() {
                 let parameter = self.parameter(&one.u, one.z0)?;
                 let state = self.state(&one.u, one.z0, parameter);
+                // of the place in the device's parameter, which may be the faster one
+                let other = self.parameter(&one.other_end.0, one.other_end.1)?;
+                let error_estimate = one.error_estimate.max((parameter - other).abs());
                 if one.n > 0 {
                     // shares are those of the way to the next point that the whole has
                     let to = here[k..].iter().find(|other| other.n == 0).map_or(1.0, |o| o.share);
@@ -269,6 +272,7 @@ impl<P: WholeShell> Lift<'_, P> {
                         share,
                         z0: parameter,
                         u: state,
+                        error_estimate,
                         mode_shape: one
                             .mode_shape
                             .mirrored(one.parity.unwrap_or(Parity::Symmetric)),
@@ -284,7 +288,8 @@ impl<P: WholeShell> Lift<'_, P> {
                     point.s + one.share * (next.s - point.s),
                     point.dp_ds + one.share * (next.dp_ds - point.dp_ds),
                 );
-                let crossing = self.pitchfork(one, [point, next], (&state, parameter))?;
+                let place = (&state[..], parameter, error_estimate);
+                let crossing = self.pitchfork(one, [point, next], place)?;
                 out.events.push(Event {
                     kind: EventKind::BranchPoint,
                     point: out.points.len(),
@@ -292,7 +297,7 @@ impl<P: WholeShell> Lift<'_, P> {
                     unstable_before: even.map(|even| even + one.modes_before),
                     unstable_after: even.map(|even| even + one.modes_after),
                     residual: self.residual(&state, parameter)?,
-                    error_estimate: one.error_estimate,
+                    error_estimate,
                     detail: Detail::Crossing(crossing),
                     eigenvectors: Vec::new(),
                 });
@@ -356,7 +361,7 @@ impl<P: WholeShell> Lift<'_, P> {
         &self,
         one: &SymmetryBreaking,
         ends: [&Point; 2],
-        (x, parameter): (&[f64], f64),
+        (x, parameter, error): (&[f64], f64, f64),
     ) -> Result<Crossing, EvalError> {
         let plate = |point: &Point| match self.device {
             Device::Grip => point.p,
@@ -368,7 +373,7 @@ impl<P: WholeShell> Lift<'_, P> {
         let traced = self.direction(along, ends[1].p - ends[0].p);
         let mode = self.odd_mode(one);
         let bend = match &mode {
-            Some(mode) => self.bend(x, parameter, mode, one.error_estimate)?,
+            Some(mode) => self.bend(x, parameter, mode, error)?,
             None => None,
         };
         // new states lie where the parameter goes with the bend
