@@ -89,6 +89,10 @@ fn pole(pair: &[Shape]) -> Sought {
         .iter()
         .map(|place| place.1)
         .fold((f64::INFINITY, 0.0_f64), |(low, high), z| (low.min(z), high.max(z)));
+    // from pole to pole a dimple is small, and what differs down to the equator is seen as it is
+    if before.plate_below.is_some() && low < 0.5 * high {
+        return Sought::Nothing;
+    }
     // with the plates, where they are near
     let plates = pair.iter().map(|shape| shape.plate).filter(|plate| *plate < high + 0.3);
     let high = plates.fold(high, f64::max);
