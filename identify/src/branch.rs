@@ -171,7 +171,7 @@ pub fn trace(
         target: Some(span.end),
         max_points: effort.points,
         // what is interpolated between points is good to 1e-5 of the force
-        max_step: Some(0.05),
+        max_step: Some(0.035),
         max_angle: effort.max_angle,
         tolerance: 1e-9,
         event_tolerance: 1e-6,

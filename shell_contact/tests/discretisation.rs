@@ -64,15 +64,16 @@ fn special_points_move_as_estimated() {
     }
 }
 
-/// The force at a given plate distance too, on the graded mesh and on either part of the branch.
+/// The force at a given plate distance is off by twice its estimate at most, on every part of the branch; nearly
+/// everywhere by half of it at least. Beside a fold two changes nearly cancel, of which either is known to a part.
 #[test]
 fn forces_change_as_estimated() {
     let of = |elements: usize| contact(elements, Law::Hooke, FIG12);
     let (problem, finer) = (of(200), of(800));
     let branch = trace(&problem, 0.7).branch;
     let mut refined = Refined::new(&problem).unwrap();
-    let mut seen = 0;
-    for point in branch.points.iter().step_by(11).filter(|point| point.event.is_none()) {
+    let (mut seen, mut too_large) = (0, 0);
+    for point in branch.points.iter().filter(|point| point.event.is_none()) {
         let p = problem.parameters_at(point.p);
         let shift = refined.shift(&point.u, &p, None).unwrap().unwrap();
         // the same state on the finer mesh, from the spline's values
@@ -82,11 +83,12 @@ fn forces_change_as_estimated() {
             continue;
         }
         let force = finer.observation(&u, &p).unwrap().force;
-        let what = format!("z0 = {}", point.p);
-        agree(&what, shift.force, (force - point.observables[0]).abs(), 1e-9);
+        let (estimate, moved) = (shift.force.unwrap(), (force - point.observables[0]).abs());
+        assert!(moved < 2.0 * estimate + 1e-9, "z0 = {}: {estimate:e}, not {moved:e}", point.p);
         seen += 1;
+        too_large += usize::from(estimate > 2.0 * moved + 1e-9);
     }
-    assert!(seen > 10);
+    assert!(seen > 100 && 10 * too_large < seen, "{too_large} of {seen}");
 }
 
 /// Coefficients on another mesh that interpolate nothing but are near: the spline's own values at the knots.

@@ -67,3 +67,26 @@ fn the_cusp_of_fig16_in_plate_distance_and_adhesion() {
     assert!(apart < 30.0 * (estimates[0] + estimates[1]), "{apart} {estimates:?}");
     assert!(estimates.iter().all(|e| *e < 1e-7));
 }
+
+/// The finer the mesh, the more rounding does a curve of folds suffer, most of all at the cusp: corrections end at 1e-8 or
+/// so, far above the tolerance.
+#[test]
+fn rounding_does_not_end_fold_curves_on_fine_meshes() {
+    let heights = [100, 300, 400, 600].map(|elements| {
+        let problem = shell(elements);
+        let base = base(&problem);
+        let fold = base.events_of(&EventKind::Fold).next().unwrap();
+        let curve = FoldCurve::at(&problem, &base, fold, "adhesion").unwrap();
+        let found = follow(&curve, None);
+        let reasons = [found.first_end.reason, found.branch.stopped.reason];
+        assert!(!reasons.contains(&StopReason::StepTooSmall), "{elements}: {reasons:?}");
+        let cusps: Vec<_> = found.branch.events_of(&EventKind::Cusp).collect();
+        assert_eq!(cusps.len(), 1, "{elements}");
+        (cusps[0].p, cusps[0].error_estimate)
+    });
+    for (adhesion, error) in heights {
+        let (finest, its_error) = heights[3];
+        // and what the mesh moves
+        assert!((adhesion - finest).abs() < error + its_error + 2e-7, "{heights:?}");
+    }
+}

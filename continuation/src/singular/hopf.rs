@@ -251,7 +251,7 @@ fn normal_form(
     let (a, b, p) = critical.eigenvectors();
     let by_branch = probe.second(z, t, 1.0, &[&a, &b])?;
     let reference = super::max_abs(&by_branch[0]).max(super::max_abs(&by_branch[1]));
-    let amplitude = if reference > 0.0 { probe.amplitude(z, &a, reference) } else { None };
+    let amplitude = if reference > 0.0 { probe.natural(z, [&a, &b], reference) } else { None };
     let amplitude = amplitude.unwrap_or(1.0);
     let found =
         settle(0.0, |part| lyapunov(probe, z, omega, critical, &p, (&a, &b), part * amplitude))?;

@@ -7,6 +7,7 @@
 
 mod chords;
 mod nearly_singular;
+mod noise;
 
 use super::stability::StabilityCount;
 use super::{Guard, Refusal, State, Weights};
@@ -52,6 +53,8 @@ pub(crate) struct Corrected {
     pub(crate) last: f64,
 }
 
+/// Corrections that shrink by less may be noise.
+const SLOW: f64 = 0.2;
 /// A residual below this part of its terms is rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// A tangent along which the residual changes by this many times what the parameter changes is steep.
@@ -197,12 +200,15 @@ impl<'a> Core<'a> {
             }
             let mut expected = correction;
             // corrections that no longer shrink, of a residual that is rounding
-            let stagnant =
+            let mut stagnant =
                 rounding && iteration > 1 && correction > 0.5 * report.last && correction <= near;
             if iteration == 0 {
                 report.first = correction;
             } else {
                 let ratio = correction / report.last;
+                if correction > converged && !stagnant && ratio > SLOW {
+                    stagnant = correction <= near && self.is_noise(constraint, x, correction);
+                }
                 if correction > converged && !stagnant {
                     report.contraction = report.contraction.max(ratio);
                     // later ratios of a converging iteration are smaller still

@@ -106,6 +106,11 @@ pub fn descend_from(
                 converged = true;
                 break;
             }
+            // the model is no smoother than its branches: what the undamped step promises may be less than that
+            _ if !towards && promised(objective, &x, &at, held) < limits.tolerance => {
+                converged = true;
+                break;
+            }
             _ => {
                 refused = true;
                 damping = (damping * 8.0).max(1e-6);
@@ -113,6 +118,17 @@ pub fn descend_from(
         }
     }
     Minimum { x, at, converged, evaluations }
+}
+
+/// What the undamped step would gain if the residuals were linear.
+fn promised(
+    objective: &Objective<'_>,
+    x: &DVector<f64>,
+    at: &Evaluation,
+    held: Option<&Held>,
+) -> f64 {
+    let step = step(objective, x, at, held, BOLD);
+    step.map_or(f64::INFINITY, |step| -at.gradient.dot(&step))
 }
 
 /// The damped step, with what is at a bound and pushed against it left out.

@@ -1,13 +1,17 @@
 //! Asymmetric states that no known branch contains.
 
 use super::{TwoPlatesProblem, spring_pairs};
-use continuation::{Branch, NewtonSettings, Problem, newton};
+use continuation::{Branch, NewtonSettings, Point, Problem, newton};
 
 /// States nearer than this to each other, relative to what sets the asymmetric one apart from its
 /// mirror image, are the same: Newton's method leaves 1e-9 of it, other states are tenths away.
 const SAME: f64 = 1e-3;
 /// What sets a state apart from its mirror image, in the metric, where it is its own.
 pub(super) const SYMMETRIC: f64 = 1e-6;
+/// Points nearer to the end of a step, in steps, say nothing of the branch that the end does not.
+const APART: f64 = 0.1;
+/// Halvings of a step.
+const HALVINGS: usize = 60;
 
 /// An asymmetric state on no known branch.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,13 +72,48 @@ pub(super) fn distance<P: Problem>(problem: &P, a: &[f64], b: &[f64]) -> f64 {
     d.iter().zip(&y).map(|(d, y)| d * y).sum::<f64>().max(0.0).sqrt()
 }
 
-/// Where a branch passes `z0`, between its points.
+/// Where a branch passes `z0`, between its points: on the polynomial through those about it.
 fn passing(branch: &Branch, z0: f64) -> Vec<Vec<f64>> {
-    let crossed = branch.points.windows(2).filter(|w| (w[0].p - z0) * (w[1].p - z0) <= 0.0);
-    let between = crossed.map(|w| {
-        let step = w[1].p - w[0].p;
-        let share = if step == 0.0 { 0.0 } else { (z0 - w[0].p) / step };
-        w[0].u.iter().zip(&w[1].u).map(|(a, b)| a + share * (b - a)).collect()
+    let points = &branch.points;
+    let crosses = |k: &usize| (points[*k].p - z0) * (points[k + 1].p - z0) <= 0.0;
+    let crossed = (0..points.len().saturating_sub(1)).filter(crosses);
+    let between = crossed.map(|k| {
+        let nodes = about(points, k);
+        let at = |s: f64| weights(&nodes, s);
+        let off = |s: f64| nodes.iter().zip(at(s)).map(|(x, w)| w * (x.p - z0)).sum::<f64>();
+        let (mut low, mut high) = (points[k].s, points[k + 1].s);
+        let below = points[k].p < points[k + 1].p;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if (off(middle) < 0.0) == below { low = middle } else { high = middle }
+        }
+        let mut u = vec![0.0; points[k].u.len()];
+        for (x, w) in nodes.iter().zip(at(0.5 * (low + high))) {
+            u.iter_mut().zip(&x.u).for_each(|(u, x)| *u += w * x);
+        }
+        u
     });
     between.collect()
+}
+
+/// The ends of the step behind point `k`, and the nearest points to both sides that are not beside them.
+fn about(points: &[Point], k: usize) -> Vec<&Point> {
+    let step = points[k + 1].s - points[k].s;
+    let apart = |a: &Point, b: &Point| (a.s - b.s).abs() > APART * step;
+    let mut nodes = vec![&points[k]];
+    if step > 0.0 {
+        nodes.push(&points[k + 1]);
+        nodes.extend(points[..k].iter().rev().find(|x| apart(x, &points[k])));
+        nodes.extend(points[k + 2..].iter().find(|x| apart(x, &points[k + 1])));
+    }
+    nodes
+}
+
+/// Lagrange's weights at `s`.
+fn weights(nodes: &[&Point], s: f64) -> Vec<f64> {
+    let weight = |x: &Point| {
+        let others = nodes.iter().filter(|y| y.s != x.s);
+        others.map(|y| (s - y.s) / (x.s - y.s)).product()
+    };
+    nodes.iter().map(|x| weight(x)).collect()
 }

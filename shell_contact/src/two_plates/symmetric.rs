@@ -54,6 +54,8 @@ const SMALLEST_AMPLITUDE: f64 = 1e-6;
 const SHRINK: f64 = 0.4;
 /// A bend with a smaller error, relative, is good enough.
 const GOOD: f64 = 1e-3;
+/// A plate distance is known to a few roundings, and a spring's base to what they do to the force.
+const ROUNDED: f64 = 1.0 + 4.0 * f64::EPSILON;
 /// Newton steps to a state at an amplitude.
 const STEPS: usize = 10;
 /// A step, in `R0`, that is rounding.
@@ -262,7 +264,9 @@ impl<P: WholeShell> Lift<'_, P> {
                 let state = self.state(&one.u, one.z0, parameter);
                 // of the place in the device's parameter, which may be the faster one
                 let other = self.parameter(&one.other_end.0, one.other_end.1)?;
-                let error_estimate = one.error_estimate.max((parameter - other).abs());
+                let rounding = self.parameter(&one.u, one.z0 * ROUNDED)? - parameter;
+                let width = one.error_estimate.max((parameter - other).abs());
+                let error_estimate = width + rounding.abs();
                 if one.n > 0 {
                     // shares are those of the way to the next point that the whole has
                     let to = here[k..].iter().find(|other| other.n == 0).map_or(1.0, |o| o.share);
