@@ -229,8 +229,14 @@ def _homes(problem: str, is_physical: bool, parameters: Iterable[str]) -> dict[s
     other = "dimensionless" if is_physical else "physical"
     kind = problem if problem in ("contact", "two-plates", "ring-load") else "catalogue"
     homes: dict[str, str | None] = {}
+    # plates have other keys beside [physical]
+    others = {table for table, problems, _ in _tables() if problems == f"{kind} with [physical]"}
     for table, problems, names in _tables():
-        if (kind in problems.split(", ") or problems.startswith("all")) and table != other:
+        if table in others:
+            belongs = problems == (f"{kind} with [physical]" if is_physical else kind)
+        else:
+            belongs = kind in problems.split(", ") or problems.startswith("all")
+        if belongs and table != other:
             homes.update((name, None if name in homes else table) for name in names)
     homes.update((name, "parameters") for name in parameters)
     return {name: table for name, table in homes.items() if table is not None}

@@ -75,7 +75,7 @@ impl RawCase {
     /// Whether its quantities have units.
     #[getter]
     fn is_physical(&self) -> bool {
-        matches!(&self.case.problem, ProblemCase::Contact(case) if case.physical.is_some())
+        self.case.problem.is_physical()
     }
 
     /// Names of the parameters of a problem of the catalogue, but for the continued one.

@@ -27,15 +27,30 @@ pub fn alternatives(case: &ResolvedCase) -> Vec<(String, String)> {
     let law = match &case.problem {
         ProblemCase::Contact(contact) => {
             match &contact.physical {
-                Some(physical) => add("physical", film::others(physical)),
+                Some(physical) => add(
+                    "physical",
+                    film::others(
+                        [&physical.adhesion, &physical.film].map(|q| q.si),
+                        &physical.potential,
+                    ),
+                ),
                 None => add("dimensionless", film::others_of_groups(&contact.potential)),
             }
             contact.shell.law
         }
         ProblemCase::TwoPlates(plates) => {
-            for (table, plate) in ["plate.top", "plate.bottom"].into_iter().zip(plates.plates) {
-                if let Some(plate) = plate {
-                    add(table, film::others_of_groups(&plate.potential));
+            let given = plates.plates.iter().zip(&plates.physical_plates);
+            for (table, (plate, physical)) in ["plate.top", "plate.bottom"].into_iter().zip(given) {
+                match (plate, physical) {
+                    (Some(plate), Some(given)) => add(
+                        table,
+                        film::others(
+                            [&given.adhesion, &given.film].map(|q| q.si),
+                            &plate.potential,
+                        ),
+                    ),
+                    (Some(plate), None) => add(table, film::others_of_groups(&plate.potential)),
+                    (None, _) => {}
                 }
             }
             plates.shell.law

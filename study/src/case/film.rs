@@ -2,7 +2,6 @@
 //!
 //! All that a case knows of potentials is here; the physics is in [`shell_contact::film`].
 
-use super::PhysicalCase;
 use super::document::Origin;
 use super::error::Complaint;
 use super::keys::{self, Absent, Key, Kind, POSITIVE, Range, key, number, quantity};
@@ -256,10 +255,9 @@ pub(super) fn owner(table: &str, key: &str) -> Option<&'static str> {
 
 /// Values for the keys of a potential that a case in physical units does not have: those that make the same
 /// depth and height of the film.
-pub(super) fn others(physical: &PhysicalCase) -> Vec<(&'static str, String)> {
-    let (film, adhesion) = (physical.film.si, physical.adhesion.si);
+pub(super) fn others([adhesion, film]: [f64; 2], potential: &Film) -> Vec<(&'static str, String)> {
     let digits = |value: f64, unit: &str| format!("{} {unit}", rounded(value));
-    match physical.potential {
+    match *potential {
         Film::FourTwo => {
             let forces = SurfaceForces::of_well(film, adhesion, TYPICAL * film);
             vec![

@@ -130,6 +130,18 @@ pub(crate) const PHYSICAL: [Key; 10 + film::PHYSICAL.len()] = joined(
     film::PHYSICAL,
 );
 
+/// The table `[physical]` between two plates, whose films are their own.
+pub(crate) const PHYSICAL_WITHOUT_FILM: [Key; 8] = [
+    RADIUS,
+    YOUNG,
+    THICKNESS,
+    CHI,
+    PHYSICAL_BENDING,
+    PHYSICAL_PRESSURE,
+    PHYSICAL_SURFACE_TENSION,
+    GAS_EXPONENT,
+];
+
 /// `mesh.elements`.
 pub(crate) const ELEMENTS: Key =
     count("elements", 8, 100_000, Absent::Count(400), "Number of elements along the meridian");
@@ -354,17 +366,34 @@ pub(crate) const PLATE_DEVICE: Key = key(
 /// The tables `[plate.top]` and `[plate.bottom]`.
 pub(crate) const PLATE: [Key; 4 + film::GROUPS.len()] =
     joined([ADHESION, FILM, PLATE_DEVICE, STIFFNESS], film::GROUPS);
+/// `stiffness` of a plate beside `[physical]`.
+const PLATE_STIFFNESS: Key = Key {
+    help: "Stiffness of the cantilever that the plate hangs on; in quotes with its unit, such as \"0.08 N/m\"",
+    ..STIFFNESS
+};
+/// The same tables beside `[physical]`.
+pub(crate) const PHYSICAL_PLATE: [Key; 4 + film::PHYSICAL.len()] =
+    joined([PHYSICAL_ADHESION, PHYSICAL_FILM, PLATE_DEVICE, PLATE_STIFFNESS], film::PHYSICAL);
+
+/// What stands behind a problem whose keys are others beside `[physical]`.
+pub const WITH_PHYSICAL: &str = " with [physical]";
+/// The problem of plates beside `[physical]`.
+const PHYSICAL_PLATES: &str = "two-plates with [physical]";
 
 /// Every table of a case file with its keys, those of catalogue problems' own parameters left out: these
 /// are in [`super::CatalogueEntry`].
-pub const TABLES: [Keys; 16] = [
+pub const TABLES: [Keys; 20] = [
     Keys { table: "shell", problems: "contact, two-plates, ring-load", keys: &SHELL },
     Keys { table: "dimensionless", problems: "contact", keys: &GROUPS },
     Keys { table: "dimensionless", problems: "two-plates", keys: &GROUPS_WITHOUT_FILM },
     Keys { table: "dimensionless", problems: "ring-load", keys: &problem::ring_load::GROUPS },
     Keys { table: "physical", problems: "contact", keys: &PHYSICAL },
+    Keys { table: "physical", problems: "two-plates", keys: &PHYSICAL_WITHOUT_FILM },
+    Keys { table: "physical", problems: "ring-load", keys: &problem::ring_load::PHYSICAL },
     Keys { table: "plate.top", problems: "two-plates", keys: &PLATE },
     Keys { table: "plate.bottom", problems: "two-plates", keys: &PLATE },
+    Keys { table: "plate.top", problems: PHYSICAL_PLATES, keys: &PHYSICAL_PLATE },
+    Keys { table: "plate.bottom", problems: PHYSICAL_PLATES, keys: &PHYSICAL_PLATE },
     Keys { table: "device", problems: "contact", keys: &DEVICE },
     Keys { table: "mesh", problems: "all with a mesh", keys: &MESH },
     Keys { table: "path", problems: "contact", keys: &CONTACT_PATH },

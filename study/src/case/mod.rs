@@ -36,7 +36,7 @@ pub use film::PASSED_OVER;
 pub use headline::headline;
 pub use name::plain_name;
 pub use path::{PathEnd, PathQuantity, PhysicalPath};
-pub use physical::{PhysicalCase, Stiffness};
+pub use physical::{PhysicalCase, PhysicalPlate, PhysicalShell, Stiffness};
 pub use picture::{AxisCase, AxisScale, Parts, PictureCase, picture_of};
 pub use problem::{PlateCase, ProblemCase, RingLoadCase, TwoPlatesCase};
 pub use source::{SHIPPED, SWEEPS, find, load, load_text, parse};

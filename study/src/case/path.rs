@@ -167,6 +167,27 @@ impl Resolver<'_> {
         Some((path?, given))
     }
 
+    /// The path between two plates, whose ends may be lengths with their units.
+    pub(super) fn plates_path(
+        &self,
+        ranges: [Range; 2],
+        scale: Scale,
+    ) -> Option<(PathCase, Option<PhysicalPath>)> {
+        let section = self.path_table();
+        let quantity = PathQuantity::Parameter;
+        let [start, end] = [("start", ranges[0]), ("end", ranges[1])]
+            .map(|(key, range)| self.path_end(section, key, range, (quantity, false), scale));
+        let path = self.path_between(
+            section,
+            start.as_ref().map(|(value, _)| *value),
+            end.as_ref().map(|(value, _)| *value),
+        );
+        let ((_, start), (_, end)) = (start?, end?);
+        let given = start.is_physical() || end.is_physical();
+        let given = given.then_some(PhysicalPath { quantity, start, end });
+        Some((path?, given))
+    }
+
     /// One end: the value of the device's parameter, and how it was given.
     fn path_end(
         &self,

@@ -6,7 +6,7 @@ use super::error::{CaseError, Complaint};
 use super::keys::{self, ANY, Key, Kind, POISSON_SKALAK, Range, names};
 use super::name::own_name;
 use super::path::Scale;
-use super::physical::{PhysicalCase, Stiffness};
+use super::physical::{PhysicalCase, ShellKeys, Stiffness};
 use super::picture;
 use super::problem::BUILT_IN;
 use super::reader::{Reader, Section};
@@ -186,22 +186,10 @@ impl<'a> Resolver<'a> {
         let dimensionless = self.table("dimensionless", DIMENSIONLESS);
         let physical = self.table("physical", PHYSICAL);
         let poisson = shell.map_or(0.5, |shell| shell.poisson);
-        let parameters = match (dimensionless.exists(), physical.exists()) {
-            (true, false) => self.groups(dimensionless).map(|(groups, film)| (groups, film, None)),
-            (false, true) => self.physical(physical, poisson),
-            (true, true) => {
-                let why = "the case has both [dimensionless] and [physical]; keep one of them";
-                let place = dimensionless.origin.max(physical.origin);
-                let name =
-                    if place == physical.origin { "physical" } else { "dimensionless" }.to_string();
-                self.reader.push(place, name, None, Complaint::Conflict(why.to_string()));
-                None
-            }
-            (false, false) => {
-                let hint = "give the parameters in a table [dimensionless] or [physical]";
-                self.reader.missing(self.root, "dimensionless", hint);
-                None
-            }
+        let parameters = match self.is_physical(dimensionless, physical) {
+            Some(false) => self.groups(dimensionless).map(|(groups, film)| (groups, film, None)),
+            Some(true) => self.physical(physical, poisson),
+            None => None,
         };
         let mesh = self.mesh();
         let scale = match &parameters {
@@ -240,9 +228,39 @@ impl<'a> Resolver<'a> {
         (problem, path)
     }
 
+    /// Whether a case has its parameters in `[physical]`; complains unless it has one of the two tables.
+    pub(super) fn is_physical(
+        &self,
+        dimensionless: Section<'_>,
+        physical: Section<'_>,
+    ) -> Option<bool> {
+        match (dimensionless.exists(), physical.exists()) {
+            (true, false) => Some(false),
+            (false, true) => Some(true),
+            (true, true) => {
+                let why = "the case has both [dimensionless] and [physical]; keep one of them";
+                let place = dimensionless.origin.max(physical.origin);
+                let name =
+                    if place == physical.origin { "physical" } else { "dimensionless" }.to_string();
+                self.reader.push(place, name, None, Complaint::Conflict(why.to_string()));
+                None
+            }
+            (false, false) => {
+                let hint = "give the parameters in a table [dimensionless] or [physical]";
+                self.reader.missing(self.root, "dimensionless", hint);
+                None
+            }
+        }
+    }
+
     /// The table `[path]` of a contact case.
     pub(super) fn contact_path_table(&self) -> Section<'a> {
         self.table("path", CONTACT_PATH)
+    }
+
+    /// The table `[path]` of other cases.
+    pub(super) fn path_table(&self) -> Section<'a> {
+        self.table("path", PATH)
     }
 
     fn entry(&mut self, entry: &CatalogueEntry) -> (Option<ProblemCase>, Option<PathCase>) {
@@ -345,28 +363,29 @@ impl<'a> Resolver<'a> {
         section: Section<'_>,
         poisson: f64,
     ) -> Option<(Dimensionless, Film, Option<Box<PhysicalCase>>)> {
-        let needed = |key| self.required_quantity(section, key);
-        let radius = needed(&keys::RADIUS);
-        let stiffness = self.stiffness(section);
-        let pressure = needed(&keys::PHYSICAL_PRESSURE);
+        let shell = self.shell_quantities(section, &ShellKeys::OF_BUBBLES);
         let film = self.physical_film(section);
-        let surface_tension = needed(&keys::PHYSICAL_SURFACE_TENSION);
-        let gas_exponent = self.or_default(section, &keys::GAS_EXPONENT);
-        let film = film?;
+        let (shell, film) = (shell?, film?);
         let physical = PhysicalCase {
-            radius: radius?,
-            stiffness: stiffness?,
-            pressure: pressure?,
+            radius: shell.radius,
+            stiffness: shell.stiffness,
+            pressure: shell.pressure,
             adhesion: film.adhesion,
             film: film.film,
             potential: film.potential,
             forces: film.forces,
-            surface_tension: surface_tension?,
-            gas_exponent: gas_exponent?,
+            surface_tension: shell.surface_tension?,
+            gas_exponent: shell.gas_exponent,
             lever: None,
             path: None,
         };
         let groups = physical.numbers().groups(poisson);
+        self.admits_groups(section, &groups)?;
+        Some((groups, physical.potential, Some(Box::new(physical))))
+    }
+
+    /// Complains about quantities whose dimensionless groups are not allowed; films of zero are none.
+    pub(super) fn admits_groups(&self, section: Section<'_>, groups: &Dimensionless) -> Option<()> {
         let checks = [
             (keys::BENDING, groups.bending),
             (keys::PRESSURE, groups.pressure),
@@ -382,15 +401,15 @@ impl<'a> Resolver<'a> {
                     key.name,
                     key.range().words
                 ));
-                self.reader.push(section.origin, "physical".to_string(), None, why);
+                self.reader.push(section.origin, section.name.to_string(), None, why);
                 return None;
             }
         }
-        Some((groups, physical.potential, Some(Box::new(physical))))
+        Some(())
     }
 
     /// Young's modulus and thickness, or the two moduli; not both, not halves of both.
-    fn stiffness(&self, section: Section<'_>) -> Option<Stiffness> {
+    pub(super) fn stiffness(&self, section: Section<'_>) -> Option<Stiffness> {
         let given: Vec<&str> = ["young", "thickness", "chi", "bending"]
             .into_iter()
             .filter(|key| section.get(key).is_some())
@@ -484,7 +503,7 @@ impl<'a> Resolver<'a> {
         start_range: Range,
         end_range: Range,
     ) -> Option<PathCase> {
-        let section = self.table("path", PATH);
+        let section = self.path_table();
         let needed = |key: &str, allowed: Range, default: Option<f64>| match default {
             Some(default) => self.or(section, key, allowed, default),
             None => self.reader.required(section, key, allowed),

@@ -6,7 +6,8 @@ use super::{
     CatalogueCase, ContactCase, DiagramCase, MapCase, MeshCase, PathCase, PathEnd, PhysicalPath,
     ProblemCase, ResolvedCase, Shell, StabilityCase, Wanted,
 };
-use super::{Law, PhysicalCase, Stiffness};
+use super::{Film, Law, PhysicalCase, PhysicalShell, Stiffness};
+use crate::units::Quantity;
 use std::fmt::Write as _;
 
 impl ResolvedCase {
@@ -18,9 +19,11 @@ impl ResolvedCase {
         self.problem.write(&mut out);
         let given = match &self.problem {
             ProblemCase::Contact(case) => case.physical.as_ref().and_then(|p| p.path.as_ref()),
+            ProblemCase::TwoPlates(case) => case.physical.as_ref().and_then(|p| p.path.as_ref()),
             _ => None,
         };
-        path(&mut out, &self.path, given);
+        let has_quantity = matches!(self.problem, ProblemCase::Contact(_));
+        path(&mut out, &self.path, given, has_quantity);
         diagram(&mut out, &self.diagram);
         map(&mut out, self.map);
         if self.problem.has_modes() {
@@ -108,7 +111,65 @@ fn groups(out: &mut Lines, prefix: &str, case: &ContactCase) {
 
 fn physical(out: &mut Lines, given: &PhysicalCase) {
     out.text("radius", &given.radius.text);
-    match &given.stiffness {
+    stiffness(out, &given.stiffness);
+    out.text("pressure", &given.pressure.text);
+    film(out, (&given.adhesion, &given.film, &given.forces), &given.potential);
+    out.text("surface_tension", &given.surface_tension.text);
+    out.number("gas_exponent", given.gas_exponent);
+}
+
+/// The groups of a shell without a film, or its quantities and the groups in a comment.
+pub(super) fn shell_groups(
+    out: &mut Lines,
+    physical: Option<&PhysicalShell>,
+    groups: &[(&str, f64)],
+) {
+    match physical {
+        None => out.table("dimensionless"),
+        Some(given) => {
+            physical_shell(out, given);
+            out.line("# in dimensionless groups:");
+        }
+    }
+    for (key, value) in groups {
+        match physical {
+            None => out.number(key, *value),
+            Some(_) => out.line(&format!("#   {key} = {value:?}")),
+        }
+    }
+}
+
+/// The table `[physical]` of a shell without a film.
+fn physical_shell(out: &mut Lines, given: &PhysicalShell) {
+    out.table("physical");
+    out.text("radius", &given.radius.text);
+    stiffness(out, &given.stiffness);
+    out.text("pressure", &given.pressure.text);
+    if let Some(tension) = &given.surface_tension {
+        out.text("surface_tension", &tension.text);
+    }
+    out.number("gas_exponent", given.gas_exponent);
+}
+
+/// A film in physical units: adhesion, length and what they follow from.
+pub(super) fn film(
+    out: &mut Lines,
+    (adhesion, length, forces): (&Quantity, &Quantity, &[(&'static str, Quantity)]),
+    potential: &Film,
+) {
+    if forces.is_empty() {
+        out.text("adhesion", &adhesion.text);
+        out.text("film", &length.text);
+    } else if let Some((key, value, _)) = film::written(potential).first() {
+        out.line(&format!("{key} = {value}"));
+        for (key, force) in forces {
+            out.text(key, &force.text);
+        }
+    }
+}
+
+fn stiffness(out: &mut Lines, given: &Stiffness) {
+    match given {
         Stiffness::Homogeneous { young, thickness } => {
             out.text("young", &young.text);
             out.text("thickness", &thickness.text);
@@ -118,18 +179,6 @@ fn physical(out: &mut Lines, given: &PhysicalCase) {
             out.text("bending", &bending.text);
         }
     }
-    out.text("pressure", &given.pressure.text);
-    if given.forces.is_empty() {
-        out.text("adhesion", &given.adhesion.text);
-        out.text("film", &given.film.text);
-    } else if let Some((key, value, _)) = film::written(&given.potential).first() {
-        out.line(&format!("{key} = {value}"));
-        for (key, force) in &given.forces {
-            out.text(key, &force.text);
-        }
-    }
-    out.text("surface_tension", &given.surface_tension.text);
-    out.number("gas_exponent", given.gas_exponent);
 }
 
 pub(super) fn mesh(out: &mut Lines, mesh: MeshCase) {
@@ -144,7 +193,7 @@ pub(super) fn mesh(out: &mut Lines, mesh: MeshCase) {
     }
 }
 
-fn path(out: &mut Lines, path: &PathCase, given: Option<&PhysicalPath>) {
+fn path(out: &mut Lines, path: &PathCase, given: Option<&PhysicalPath>, has_quantity: bool) {
     out.table("path");
     match given {
         None => {
@@ -152,7 +201,9 @@ fn path(out: &mut Lines, path: &PathCase, given: Option<&PhysicalPath>) {
             out.number("end", path.end);
         }
         Some(given) => {
-            out.text("quantity", given.quantity.name());
+            if has_quantity {
+                out.text("quantity", given.quantity.name());
+            }
             for (key, end) in [("start", &given.start), ("end", &given.end)] {
                 match end {
                     PathEnd::Number(value) => out.number(key, *value),

@@ -1,7 +1,8 @@
 //! A branch in physical units: the same columns, beside the dimensionless ones, which stay as they are.
 
 use super::result::{Cell, Table};
-use crate::case::{PhysicalCase, ProblemCase, ResolvedCase};
+use crate::case::{PhysicalCase, PhysicalShell, ProblemCase, ResolvedCase};
+use std::f64::consts::PI;
 
 /// What one dimensionless unit of a shell is, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,26 +17,72 @@ pub struct Scales {
     pub energy: f64,
     /// `chi`, in N/m.
     pub tension: f64,
-    /// `w0 / delta_A`, in Pa, the unit of the film's pressure.
-    pub film_pressure: f64,
+    /// `w0 / delta_A`, in Pa, the unit of the film's pressure; `None` without a film, and where two plates have
+    /// films of different units.
+    pub film_pressure: Option<f64>,
+    /// Thickness `h` of the homogeneous wall with these moduli, in m.
+    pub thickness: f64,
 }
 
 impl Scales {
     /// Those of a case; `None` for one that is not in physical units.
     pub fn of(case: &ResolvedCase) -> Option<Scales> {
-        let ProblemCase::Contact(contact) = &case.problem else { return None };
-        let physical = contact.physical.as_ref()?;
-        let (radius, chi) = (physical.radius.si, physical.chi());
-        Some(Scales {
+        match &case.problem {
+            ProblemCase::Contact(contact) => {
+                let physical = contact.physical.as_ref()?;
+                let film = physical.adhesion.si / physical.film.si;
+                let (poisson, groups) = (contact.shell.poisson, &contact.groups);
+                let wall = (12.0 * (1.0 - poisson * poisson) * groups.bending).sqrt();
+                let thickness = physical.radius.si * wall;
+                let force = physical.force_scale(groups);
+                let (radius, chi) = (physical.radius.si, physical.chi());
+                Some(Scales::new(radius, chi, (force, thickness), Some(film)))
+            }
+            ProblemCase::TwoPlates(plates) => {
+                let physical = plates.physical.as_ref()?;
+                let films = plates.physical_plates.iter().flatten();
+                let mut units = films.map(|plate| plate.adhesion.si / plate.film.si);
+                let first = units.next();
+                let film = first.filter(|first| units.all(|other| other == *first));
+                Some(Scales::of_shell(physical, plates.shell.poisson, film))
+            }
+            ProblemCase::RingLoad(ring) => {
+                Some(Scales::of_shell(ring.physical.as_ref()?, ring.shell.poisson, None))
+            }
+            ProblemCase::Catalogue(_) => None,
+        }
+    }
+
+    fn of_shell(shell: &PhysicalShell, poisson: f64, film: Option<f64>) -> Scales {
+        let (force, thickness) = (shell.force_scale(poisson), shell.thickness(poisson));
+        Scales::new(shell.radius.si, shell.stiffness.chi(), (force, thickness), film)
+    }
+
+    fn new(
+        radius: f64,
+        chi: f64,
+        (force, thickness): (f64, f64),
+        film_pressure: Option<f64>,
+    ) -> Scales {
+        Scales {
             length: radius,
-            force: physical.force_scale(&contact.groups),
+            force,
             pressure: chi / radius,
             energy: chi * radius * radius,
             tension: chi,
-            film_pressure: physical.adhesion.si / physical.film.si,
-        })
+            film_pressure,
+            thickness,
+        }
+    }
+
+    /// `2e-6 pi chi R0`, the unit of forces under a ring load, in N.
+    fn ring_force(&self) -> f64 {
+        2e-6 * PI * self.tension * self.length
     }
 }
+
+/// The unit of forces under a ring load, as columns name it.
+const RING_FORCE: &str = "2e-6 pi chi R0";
 
 /// A unit and its size in SI units.
 pub type Unit = (&'static str, f64);
@@ -91,11 +138,17 @@ impl PhysicalUnits {
             // a shell of some micrometres is pressed by nanometres
             length: choose(&LENGTHS, scales.length * largest("R0") / 100.0),
             volume: choose(&VOLUMES, scales.length.powi(3) * largest("R0^3")),
-            force: choose(&FORCES, scales.force * largest("sqrt(chi k_b)")),
+            force: choose(
+                &FORCES,
+                f64::max(
+                    scales.force * largest("sqrt(chi k_b)"),
+                    scales.ring_force() * largest(RING_FORCE),
+                ),
+            ),
             pressure: choose(&PRESSURES, scales.pressure * largest("chi/R0")),
             tension: choose(&TENSIONS, scales.tension * largest("chi")),
             energy: choose(&ENERGIES, scales.energy * largest("chi R0^2")),
-            film_pressure: choose(&PRESSURES, scales.film_pressure),
+            film_pressure: choose(&PRESSURES, scales.film_pressure.unwrap_or_default()),
         }
     }
 
@@ -108,7 +161,9 @@ impl PhysicalUnits {
             "chi/R0" => (self.pressure, scales.pressure),
             "chi R0^2" => (self.energy, scales.energy),
             "chi" => (self.tension, scales.tension),
-            "w0/delta_A" => (self.film_pressure, scales.film_pressure),
+            "w0/delta_A" => (self.film_pressure, scales.film_pressure?),
+            "h" => (self.length, scales.thickness),
+            RING_FORCE => (self.force, scales.ring_force()),
             _ => return None,
         };
         Some((name, scale / size))
@@ -153,7 +208,7 @@ impl Laboratory {
         let mut numbers: Vec<Vec<f64>> = Vec::new();
         for name in columns {
             let Some((unit, factor)) = self.convert(table.unit(name)) else { continue };
-            titles.push(in_unit(name, unit));
+            titles.push(in_unit(name.trim_end_matches("_over_h"), unit));
             numbers.push(table.numbers(name).into_iter().map(|value| factor * value).collect());
         }
         for (name, values) in of_the_laboratory(case, &self.scales, table) {

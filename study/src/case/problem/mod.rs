@@ -87,6 +87,16 @@ impl ProblemCase {
         }
     }
 
+    /// Whether its parameters were given in physical units.
+    pub fn is_physical(&self) -> bool {
+        match self {
+            ProblemCase::Contact(contact) => contact.physical.is_some(),
+            ProblemCase::TwoPlates(plates) => plates.physical.is_some(),
+            ProblemCase::RingLoad(ring) => ring.physical.is_some(),
+            ProblemCase::Catalogue(_) => false,
+        }
+    }
+
     /// Whether modes around the axis are counted.
     pub fn has_modes(&self) -> bool {
         matches!(self, ProblemCase::Contact(_) | ProblemCase::TwoPlates(_))

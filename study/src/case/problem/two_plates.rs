@@ -4,10 +4,13 @@ use super::{ProblemCase, Read};
 use crate::case::document::Value;
 use crate::case::error::Complaint;
 use crate::case::keys::{self, ANY, POSITIVE, names};
+use crate::case::path::Scale;
+use crate::case::physical::ShellKeys;
 use crate::case::reader::Section;
 use crate::case::resolve::{CONTACT_START, HOMES, Resolver};
 use crate::case::write::{self, Lines};
-use crate::case::{MeshCase, Shell, film};
+use crate::case::{MeshCase, PhysicalPlate, PhysicalShell, Shell, film};
+use crate::units::{Dimension, Quantity};
 use shell_contact::film::Film;
 
 /// A microbubble from pole to pole between two plates.
@@ -27,6 +30,10 @@ pub struct TwoPlatesCase {
     pub plates: [Option<PlateCase>; 2],
     /// Whether the equator is held in the mid-plane.
     pub held: bool,
+    /// The shell in physical units, if it was given in them.
+    pub physical: Option<Box<PhysicalShell>>,
+    /// The same of the films of the plates that there are.
+    pub physical_plates: [Option<PhysicalPlate>; 2],
     /// The mesh of either half.
     pub mesh: MeshCase,
 }
@@ -54,8 +61,12 @@ pub struct PlateCase {
 
 /// Keys of the whole shell; those of the films are the plates'.
 const GROUPS: &[&str] = &names(&keys::GROUPS_WITHOUT_FILM);
+/// The same in physical units.
+const PHYSICAL: &[&str] = &names(&keys::PHYSICAL_WITHOUT_FILM);
 /// Keys of a plate.
 const PLATE: &[&str] = &names(&keys::PLATE);
+/// The same in physical units.
+const PHYSICAL_PLATE: &[&str] = &names(&keys::PHYSICAL_PLATE);
 /// The tables of the plates.
 const TABLES: [(&str, &str); 2] = [("top", "plate.top"), ("bottom", "plate.bottom")];
 
@@ -72,6 +83,7 @@ impl<'a> Resolver<'a> {
             "equator",
             "shell",
             "dimensionless",
+            "physical",
             "plate",
             "mesh",
             "path",
@@ -82,19 +94,44 @@ impl<'a> Resolver<'a> {
         ];
         self.reader.only(self.root, &tables, HOMES);
         let shell = self.shell();
-        let groups = self.reader.section(self.root, "dimensionless");
+        let dimensionless = self.reader.section(self.root, "dimensionless");
         let homes: Vec<_> = std::iter::once((TABLES[0].1, PLATE)).chain(HOMES.to_vec()).collect();
-        self.reader.only(groups, GROUPS, &homes);
-        let groups = self.groups_without_film(groups);
+        self.reader.only(dimensionless, GROUPS, &homes);
+        let physical = self.reader.section(self.root, "physical");
+        let homes: Vec<_> =
+            std::iter::once((TABLES[0].1, PHYSICAL_PLATE)).chain(HOMES.to_vec()).collect();
+        self.reader.only(physical, PHYSICAL, &homes);
+        let poisson = shell.map_or(0.5, |shell| shell.poisson);
+        let groups = match self.is_physical(dimensionless, physical) {
+            Some(false) => self.groups_without_film(dimensionless).map(|groups| (groups, None)),
+            Some(true) => self.physical_shell(physical, &ShellKeys::OF_BUBBLES, poisson).map(
+                |(all, given)| {
+                    let groups = [all.bending, all.pressure, all.surface_tension, all.gas_exponent];
+                    (groups, Some(Box::new(given)))
+                },
+            ),
+            None => None,
+        };
         let held = self.equator();
-        let plates = self.plates(held.unwrap_or(false));
+        let given = groups.as_ref().and_then(|(_, given)| given.as_deref());
+        let units = match given {
+            Some(shell) => PlateUnits::Physical { shell, poisson },
+            None if physical.exists() => PlateUnits::Unknown,
+            None => PlateUnits::Dimensionless,
+        };
+        let plates = self.plates(held.unwrap_or(false), units);
         let mesh = self.fixed_mesh();
-        let on_spring = plates.is_some_and(|[top, _]| top.is_some_and(|p| p.stiffness.is_some()));
-        let (start, end) = if on_spring { (ANY, ANY) } else { (CONTACT_START, POSITIVE) };
-        let path = self.path(None, start, end);
+        let on_spring = plates
+            .as_ref()
+            .is_some_and(|[top, _]| top.as_ref().is_some_and(|(p, _)| p.stiffness.is_some()));
+        let ranges = if on_spring { [ANY, ANY] } else { [CONTACT_START, POSITIVE] };
+        let (path, ends) = self.plates_path(ranges, units.scale()).unzip();
         let problem = match (shell, groups, plates, held, mesh) {
-            (Some(shell), Some(groups), Some(plates), Some(held), Some(mesh)) => {
+            (Some(shell), Some((groups, physical)), Some(plates), Some(held), Some(mesh)) => {
                 let [bending, pressure, surface_tension, gas_exponent] = groups;
+                let (plates, physical_plates) = separated(plates);
+                let physical = physical
+                    .map(|given| Box::new(PhysicalShell { path: ends.flatten(), ..*given }));
                 Some(ProblemCase::TwoPlates(TwoPlatesCase {
                     shell,
                     bending,
@@ -103,6 +140,8 @@ impl<'a> Resolver<'a> {
                     gas_exponent,
                     plates,
                     held,
+                    physical,
+                    physical_plates,
                     mesh,
                 }))
             }
@@ -120,10 +159,10 @@ impl<'a> Resolver<'a> {
     }
 
     /// Both plates; one may be absent if something else holds the shell.
-    fn plates(&self, held: bool) -> Option<[Option<PlateCase>; 2]> {
+    fn plates(&self, held: bool, units: PlateUnits<'_>) -> Option<[Option<Plate>; 2]> {
         let plate = self.reader.section(self.root, "plate");
         self.reader.only(plate, &TABLES.map(|(key, _)| key), HOMES);
-        let mut plates = [None; 2];
+        let mut plates = [None, None];
         let mut good = true;
         for (k, (key, name)) in TABLES.into_iter().enumerate() {
             let Some(node) = plate.get(key) else { continue };
@@ -133,8 +172,12 @@ impl<'a> Resolver<'a> {
                 continue;
             };
             let section = Section::of(name, node.origin, table);
-            self.reader.only(section, PLATE, HOMES);
-            plates[k] = self.plate(section, k == 0);
+            let (own, homes) = match units {
+                PlateUnits::Dimensionless => (PLATE, HOMES),
+                _ => (PHYSICAL_PLATE, HOMES),
+            };
+            self.reader.only(section, own, homes);
+            plates[k] = self.plate(section, k == 0, units);
             good &= plates[k].is_some();
         }
         let absent: Vec<&str> = TABLES
@@ -160,14 +203,17 @@ impl<'a> Resolver<'a> {
         good.then_some(plates)
     }
 
-    fn plate(&self, section: Section<'a>, top: bool) -> Option<PlateCase> {
-        let film = self.film(section);
+    fn plate(&self, section: Section<'a>, top: bool, units: PlateUnits<'_>) -> Option<Plate> {
+        let film = self.plate_film(section, units);
         let device = match section.get("device") {
             None => Some(DEVICES[0]),
             Some(_) => self.reader.word(section, "device", &DEVICES),
         };
-        let stiffness = self.number(section, &keys::STIFFNESS);
         let given = section.get("stiffness");
+        let stiffness = match given {
+            Some(node) if node.is_quantity() => self.plate_lever(section, units).unzip(),
+            _ => (self.number(section, &keys::STIFFNESS), None),
+        };
         let cantilever = device? == DEVICES[1];
         if let (true, false, Some(node)) = (cantilever, top, section.get("device")) {
             let why = "only the upper plate may hang on a cantilever: give it to [plate.top]";
@@ -187,10 +233,93 @@ impl<'a> Resolver<'a> {
             }
             _ => {}
         }
-        let stiffness = if cantilever { Some(stiffness?) } else { None };
-        let (adhesion, film, potential) = film?;
-        Some(PlateCase { adhesion, film, potential, stiffness })
+        let (stiffness, lever) =
+            if cantilever { (Some(stiffness.0?), stiffness.1) } else { (None, None) };
+        let (adhesion, film, potential, given) = film?;
+        let given = given.map(|given| PhysicalPlate { lever, ..given });
+        Some((PlateCase { adhesion, film, potential, stiffness }, given))
     }
+
+    /// The film of a plate: adhesion, length and potential, and how they were given in physical units.
+    fn plate_film(
+        &self,
+        section: Section<'a>,
+        units: PlateUnits<'_>,
+    ) -> Option<(f64, f64, Film, Option<PhysicalPlate>)> {
+        if let PlateUnits::Dimensionless = units {
+            let (adhesion, film, potential) = self.film(section)?;
+            return Some((adhesion, film, potential, None));
+        }
+        let film::PhysicalFilm { adhesion, film, potential, forces } =
+            self.physical_film(section)?;
+        let PlateUnits::Physical { shell, poisson } = units else { return None };
+        let groups = shell.numbers(adhesion.si, film.si).groups(poisson);
+        self.admits_groups(section, &groups)?;
+        let given = PhysicalPlate { adhesion, film, forces, lever: None };
+        Some((groups.adhesion, groups.film, potential, Some(given)))
+    }
+
+    /// A cantilever with its unit: `k_c = K R0/sqrt(chi k_b)`, as it gives way behind one plate.
+    fn plate_lever(&self, section: Section<'a>, units: PlateUnits<'_>) -> Option<(f64, Quantity)> {
+        let key = keys::STIFFNESS;
+        let node = section.get(key.name)?;
+        let given = self.reader.quantity(section, key.name, Dimension::Tension, POSITIVE)?;
+        let why = match units.scale() {
+            Scale::Known { radius, force } => {
+                let stiffness = given.si * radius / force;
+                if key.range().contains(stiffness) {
+                    return Some((stiffness, given));
+                }
+                format!(
+                    "this lever makes the dimensionless stiffness {stiffness:?}, which must be {}; check the units",
+                    key.range().words
+                )
+            }
+            Scale::Unknown => return None,
+            Scale::None => {
+                "a stiffness with a unit needs the shell in physical units, in a table [physical]; \
+                            with [dimensionless] give K R0/sqrt(chi k_b), a number"
+                    .to_owned()
+            }
+        };
+        self.reader.refuse(section, key.name, node, Complaint::Conflict(why));
+        None
+    }
+}
+
+/// A plate, and how its film and its lever were given in physical units.
+type Plate = (PlateCase, Option<PhysicalPlate>);
+
+/// In what the keys of a plate are.
+#[derive(Clone, Copy)]
+enum PlateUnits<'s> {
+    /// In those of `[dimensionless]`.
+    Dimensionless,
+    /// In physical ones, of a shell that is wrong.
+    Unknown,
+    /// In physical ones.
+    Physical { shell: &'s PhysicalShell, poisson: f64 },
+}
+
+impl PlateUnits<'_> {
+    fn scale(self) -> Scale {
+        match self {
+            PlateUnits::Dimensionless => Scale::None,
+            PlateUnits::Unknown => Scale::Unknown,
+            PlateUnits::Physical { shell, poisson } => {
+                Scale::Known { radius: shell.radius.si, force: shell.force_scale(poisson) }
+            }
+        }
+    }
+}
+
+/// The plates, and what is physical of them.
+fn separated(plates: [Option<Plate>; 2]) -> ([Option<PlateCase>; 2], [Option<PhysicalPlate>; 2]) {
+    let [top, bottom] = plates.map(|plate| match plate {
+        Some((plate, given)) => (Some(plate), given),
+        None => (None, None),
+    });
+    ([top.0, bottom.0], [top.1, bottom.1])
 }
 
 /// The case as a case file has it.
@@ -198,22 +327,34 @@ pub(super) fn write(out: &mut Lines, case: &TwoPlatesCase) {
     out.text("problem", "two-plates");
     out.text("equator", EQUATOR[usize::from(case.held)]);
     write::shell(out, case.shell);
-    out.table("dimensionless");
-    out.number("bending", case.bending);
-    out.number("pressure", case.pressure);
-    out.number("surface_tension", case.surface_tension);
-    out.number("gas_exponent", case.gas_exponent);
-    for (name, plate) in ["plate.top", "plate.bottom"].into_iter().zip(case.plates) {
+    let groups = [
+        ("bending", case.bending),
+        ("pressure", case.pressure),
+        ("surface_tension", case.surface_tension),
+        ("gas_exponent", case.gas_exponent),
+    ];
+    write::shell_groups(out, case.physical.as_deref(), &groups);
+    let plates = case.plates.into_iter().zip(&case.physical_plates);
+    for (name, (plate, given)) in ["plate.top", "plate.bottom"].into_iter().zip(plates) {
         let Some(plate) = plate else { continue };
         out.table(name);
-        out.number("adhesion", plate.adhesion);
-        out.number("film", plate.film);
-        for (key, value, _) in film::written(&plate.potential) {
-            out.line(&format!("{key} = {value}"));
+        if let Some(given) = given {
+            write::film(out, (&given.adhesion, &given.film, &given.forces), &plate.potential);
+        } else {
+            out.number("adhesion", plate.adhesion);
+            out.number("film", plate.film);
+            for (key, value, _) in film::written(&plate.potential) {
+                out.line(&format!("{key} = {value}"));
+            }
         }
         out.text("device", DEVICES[usize::from(plate.stiffness.is_some())]);
-        if let Some(stiffness) = plate.stiffness {
-            out.number("stiffness", stiffness);
+        match (plate.stiffness, given.as_ref().and_then(|given| given.lever.as_ref())) {
+            (Some(stiffness), Some(lever)) => {
+                out.line(&format!("# in sqrt(chi k_b)/R0: {stiffness:?}"));
+                out.text("stiffness", &lever.text);
+            }
+            (Some(stiffness), None) => out.number("stiffness", stiffness),
+            (None, _) => {}
         }
     }
     write::mesh(out, case.mesh);

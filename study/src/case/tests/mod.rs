@@ -1,6 +1,7 @@
 //! Cases, good and bad.
 
 mod film;
+mod physical;
 mod picture;
 
 use super::source::load_text;
