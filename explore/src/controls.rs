@@ -1,7 +1,7 @@
 //! What can be moved on the page: the numbers and words of a case, from the table of keys of `study`.
 
 use serde::Serialize;
-use study::case::keys::{Kind, TABLES};
+use study::case::keys::{Kind, TABLES, WITH_PHYSICAL};
 use study::case::{CatalogueEntry, ProblemCase, ResolvedCase, alternatives, needs};
 
 /// How far a slider goes from the value of the case, as a factor, where its range has no end.
@@ -59,14 +59,11 @@ pub(crate) struct Control {
 pub(crate) fn controls(case: &ResolvedCase, catalogue: &[CatalogueEntry]) -> Vec<Control> {
     let resolved: toml::Table = toml::from_str(&case.to_toml()).unwrap_or_default();
     let name = case.problem.name();
-    let physical = match &case.problem {
-        ProblemCase::Contact(contact) => contact.physical.is_some(),
-        ProblemCase::Catalogue(_) => {
-            let entry = catalogue.iter().find(|entry| entry.name == name);
-            return entry.map_or_else(Vec::new, |entry| of_catalogue(&resolved, entry));
-        }
-        _ => false,
-    };
+    if let ProblemCase::Catalogue(_) = &case.problem {
+        let entry = catalogue.iter().find(|entry| entry.name == name);
+        return entry.map_or_else(Vec::new, |entry| of_catalogue(&resolved, entry));
+    }
+    let physical = case.problem.is_physical();
     let groups = if physical { "physical" } else { "dimensionless" };
     let tables = [groups, "plate.top", "plate.bottom", "shell", "device", "path"];
     let others = alternatives(case);
@@ -74,7 +71,12 @@ pub(crate) fn controls(case: &ResolvedCase, catalogue: &[CatalogueEntry]) -> Vec
     for table in tables {
         let own = TABLES.iter().filter(|keys| keys.table == table);
         let own = own.filter(|keys| {
-            keys.problems == "all" || keys.problems.split(", ").any(|problem| problem == name)
+            let own = |problem: &str| match problem.strip_suffix(WITH_PHYSICAL) {
+                Some(own) => physical && own == name,
+                // plates have other keys beside [physical]
+                None => problem == name && !(physical && table.starts_with("plate.")),
+            };
+            keys.problems == "all" || keys.problems.split(", ").any(own)
         });
         for key in own.flat_map(|keys| keys.keys) {
             let path = format!("{table}.{}", key.name);

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
-use study::case::{CatalogueEntry, ProblemCase, ResolvedCase};
+use study::case::{CatalogueEntry, ResolvedCase};
 use study::record::{PhysicalUnits, branch_csv, events_json, physical_table};
 
 /// Connections at once; a browser opens six.
@@ -155,8 +155,7 @@ impl Explorer {
         let case = self.bench.case();
         let problem = case.problem.name();
         let entry = self.bench.catalogue().iter().find(|entry| entry.name == problem);
-        let physical =
-            matches!(&case.problem, ProblemCase::Contact(contact) if contact.physical.is_some());
+        let physical = case.problem.is_physical();
         json(&Description {
             name: &case.name,
             problem,

@@ -1,8 +1,10 @@
 //! Titles that say which shell or problem a picture shows.
 
 use study::case::{
-    Film, Law, PhysicalCase, ProblemCase, ResolvedCase, Shell, Stiffness, catalogue, shown,
+    Film, Law, PhysicalCase, PhysicalShell, ProblemCase, ResolvedCase, Shell, Stiffness, catalogue,
+    shown,
 };
+use study::units::Quantity;
 
 /// A title with a second line below it: law and groups of a shell, in the units in which the case gives
 /// them; of a problem of the catalogue, what it is and its parameters.
@@ -29,27 +31,37 @@ pub fn titled(title: &str, case: &ResolvedCase) -> String {
             let sides = [("above", plates.plates[0]), ("below", plates.plates[1])];
             let films: String = sides
                 .into_iter()
-                .filter_map(|(side, plate)| Some((side, plate?)))
-                .map(|(side, plate)| {
-                    let (adhesion, film) = (number(plate.adhesion), potential(&plate.potential));
-                    format!(
-                        "; {side} w₀/χ = {adhesion}, δ_{{A}}/R₀ = {}, {film}",
-                        number(plate.film)
-                    )
+                .zip(&plates.physical_plates)
+                .filter_map(|((side, plate), given)| Some((side, plate?, given)))
+                .map(|(side, plate, given)| {
+                    let depth = match given {
+                        Some(given) => film(&given.adhesion, &given.film),
+                        None => {
+                            let (adhesion, film) = (number(plate.adhesion), number(plate.film));
+                            format!("w₀/χ = {adhesion}, δ_{{A}}/R₀ = {film}")
+                        }
+                    };
+                    format!("; {side} {depth}, {}", potential(&plate.potential))
                 })
                 .collect();
-            let groups = listed(&[
-                ("k_{b}/(χR₀²)", plates.bending),
-                ("P_{A}R₀/χ", plates.pressure),
-                ("γ/χ", plates.surface_tension),
-            ]);
+            let groups = match &plates.physical {
+                Some(physical) => shell(physical),
+                None => listed(&[
+                    ("k_{b}/(χR₀²)", plates.bending),
+                    ("P_{A}R₀/χ", plates.pressure),
+                    ("γ/χ", plates.surface_tension),
+                ]),
+            };
             format!("{}; {groups}{films}", law(plates.shell))
         }
         ProblemCase::RingLoad(ring) => {
-            let groups = listed(&[
-                ("k_{b}/(χR₀²)", ring.groups.bending),
-                ("P_{A}R₀/χ", ring.groups.pressure),
-            ]);
+            let groups = match &ring.physical {
+                Some(physical) => shell(physical),
+                None => listed(&[
+                    ("k_{b}/(χR₀²)", ring.groups.bending),
+                    ("P_{A}R₀/χ", ring.groups.pressure),
+                ]),
+            };
             format!("{}; {groups}", law(ring.shell))
         }
         ProblemCase::Catalogue(problem) => {
@@ -112,8 +124,30 @@ fn listed(values: &[(&str, f64)]) -> String {
 }
 
 fn physically(physical: &PhysicalCase) -> String {
-    let mut words = vec![format!("R₀ = {}", physical.radius.text)];
-    match &physical.stiffness {
+    let mut words = wall(&physical.radius, &physical.stiffness);
+    words.push(format!("P_{{A}} = {}", physical.pressure.text));
+    words.push(film(&physical.adhesion, &physical.film));
+    words.extend(tension(&physical.surface_tension));
+    micro(&words.join(", "))
+}
+
+/// A shell in physical units without its film.
+fn shell(physical: &PhysicalShell) -> String {
+    let mut words = wall(&physical.radius, &physical.stiffness);
+    if physical.pressure.si != 0.0 {
+        words.push(format!("P_{{A}} = {}", physical.pressure.text));
+    }
+    words.extend(physical.surface_tension.as_ref().and_then(tension));
+    micro(&words.join(", "))
+}
+
+fn micro(words: &str) -> String {
+    words.replace(" um", " µm").replace(" uN", " µN")
+}
+
+fn wall(radius: &Quantity, stiffness: &Stiffness) -> Vec<String> {
+    let mut words = vec![format!("R₀ = {}", radius.text)];
+    match stiffness {
         Stiffness::Homogeneous { young, thickness } => {
             words.push(format!("E = {}, h = {}", young.text, thickness.text));
         }
@@ -122,13 +156,15 @@ fn physically(physical: &PhysicalCase) -> String {
             words.push(format!("χ = {chi}, k_{{b}} = {bending}"));
         }
     }
-    words.push(format!("P_{{A}} = {}", physical.pressure.text));
-    words.push(format!("w₀ = {}", quantity(&physical.adhesion.text)));
-    words.push(format!("δ_{{A}} = {}", physical.film.text));
-    if physical.surface_tension.si != 0.0 {
-        words.push(format!("γ = {}", physical.surface_tension.text));
-    }
-    words.join(", ").replace(" um", " µm").replace(" uN", " µN")
+    words
+}
+
+fn film(adhesion: &Quantity, film: &Quantity) -> String {
+    micro(&format!("w₀ = {}, δ_{{A}} = {}", quantity(&adhesion.text), film.text))
+}
+
+fn tension(tension: &Quantity) -> Option<String> {
+    (tension.si != 0.0).then(|| format!("γ = {}", tension.text))
 }
 
 /// Four digits, with a power of ten where the number is small or large.

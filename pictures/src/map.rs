@@ -68,6 +68,10 @@ fn physical(case: &ResolvedCase, result: &MapResult) -> Option<(String, String, 
         "bending" => "bending stiffness k_{b}",
         "pressure" => "ambient pressure P_{A}",
         "film" => "film length δ_{A}",
+        "adhesion_top" => "adhesion of the upper plate w₀",
+        "adhesion_bottom" => "adhesion of the lower plate w₀",
+        "film_top" => "film length of the upper plate δ_{A}",
+        "film_bottom" => "film length of the lower plate δ_{A}",
         _ => return None,
     };
     let (unit, x) = laboratory.convert(table.unit(&result.key))?;

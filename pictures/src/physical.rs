@@ -3,7 +3,7 @@
 use super::chart::DrawError;
 use super::columns::{are_asked, within};
 use super::draw;
-use study::case::ResolvedCase;
+use study::case::{ProblemCase, ResolvedCase};
 use study::record::view::{Curve, Profile};
 use study::record::{DiagramResult, Laboratory, Table, TraceResult, spoken};
 
@@ -29,7 +29,8 @@ pub fn draw_physical(
         (spoken(name), factor)
     };
     let (length, force) = (of("R0"), of("sqrt(chi k_b)"));
-    let (energy, film) = (of("chi R0^2"), of("w0/delta_A"));
+    let energy = of("chi R0^2");
+    let film = laboratory.convert("w0/delta_A").map(|(name, factor)| (spoken(name), factor));
     let pictures = &result.pictures;
     let title = super::titled(&pictures.title, case);
     let look = &case.picture;
@@ -39,6 +40,14 @@ pub fn draw_physical(
     };
     let deformation = format!("deformation Δ [{}]", length.0);
     let force_title = format!("force F [{}]", force.0);
+    if let (ProblemCase::RingLoad(_), Some((angle, _, curve))) = (&case.problem, &pictures.diagram)
+    {
+        let (unit, factor) = of(result.table.unit("force"));
+        let curve = scaled(curve, 1.0, factor);
+        let chart = draw::along(&title, angle, &format!("force F [{unit}]"), &curve);
+        let chart = if are_asked(look) { chart } else { within(chart, look, (1.0, factor)) };
+        add(PHYSICAL_DIAGRAM, chart)?;
+    }
     if let Some(curve) = &pictures.force_deformation {
         let curve = scaled(curve, length.1, force.1);
         add(PHYSICAL[0], draw::along(&title, &deformation, &force_title, &curve))?;
@@ -50,7 +59,7 @@ pub fn draw_physical(
         let chart = if are_asked(look) { chart } else { within(chart, look, (length.1, force.1)) };
         add(PHYSICAL[1], chart)?;
     }
-    if !pictures.film_pressure.is_empty() {
+    if let (false, Some(film)) = (pictures.film_pressure.is_empty(), film) {
         let profile = |profile: &Profile| Profile {
             sigma: times(&profile.sigma, length.1),
             value: times(&profile.value, film.1),
@@ -114,6 +123,35 @@ mod tests {
     use std::ops::ControlFlow;
     use study::case::{Override, load};
     use study::run::run_trace;
+
+    #[test]
+    fn a_ring_load_and_two_plates_have_axes_of_their_laboratory() {
+        let shell = "[shell]\nlaw = \"hooke\"\n[physical]\nradius = \"1.5 um\"\nyoung = \"2.1 GPa\"\n\
+                     thickness = \"25 nm\"\n";
+        let ring = format!(
+            "problem = \"ring-load\"\n{shell}[mesh]\nelements = 40\n[path]\nstart = 4.5\nend = 6.0\n"
+        );
+        let film = "adhesion = \"50 mN/m\"\nfilm = \"50 nm\"\n";
+        let plates = format!(
+            "problem = \"two-plates\"\n{shell}pressure = \"1 bar\"\n[plate.top]\n{film}[plate.bottom]\n{film}\
+             [mesh]\nelements = 24\n[stability]\nscan = \"axisymmetric\"\n[path]\nstart = 1.1\nend = 1.02\n"
+        );
+        for (text, names, words) in [
+            (ring, &[PHYSICAL_DIAGRAM][..], &["contact angle α (degrees)", "force F [uN]"][..]),
+            (plates, &PHYSICAL[1..3], &["plate distance z₀ [nm]", "force F ["]),
+        ] {
+            let case = study::case::load_text("a", "a", &text, &[], &study::case::catalogue());
+            let case = case.unwrap().case;
+            let result = run_trace(&case, &mut |_| ControlFlow::Continue(())).unwrap();
+            let files = draw_physical(&case, &result).unwrap();
+            let found: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+            assert!(names.iter().all(|name| found.contains(name)), "{found:?}");
+            let svg = String::from_utf8(files[usize::from(found.len() == 3)].1.clone()).unwrap();
+            let words: Vec<String> = words.iter().map(|word| word.replace("uN", "µN")).collect();
+            assert!(words.iter().all(|word| svg.contains(word)), "{svg}");
+            assert!(svg.contains("R₀ = 1.5 µm"), "{svg}");
+        }
+    }
 
     #[test]
     fn a_physical_case_has_axes_of_its_laboratory() {

@@ -139,13 +139,16 @@ fn physical(chart: Chart, laboratory: &Laboratory, table: &Table) -> Chart {
     let y = chart.columns.first().and_then(|(column, _)| unit(column));
     let x = unit(&chart.x.0);
     let words = |title: &str| match title.split_once('/') {
-        // what stands behind the stroke is the dimensionless unit
-        Some((words, _)) => words.to_owned(),
+        // what stands behind the stroke is the dimensionless unit, as is a power of ten before the symbol
+        Some((words, _)) => words.replace("10⁶", ""),
         None => title.to_owned(),
     };
-    let titles = x.zip(y).map(|(x, y)| {
-        (format!("{} [{x}]", words(&chart.x.1)), format!("{} [{y}]", words(&chart.y)))
-    });
+    let in_unit = |title: &str, unit: &Option<String>| match unit {
+        Some(unit) => format!("{} [{unit}]", words(title)),
+        None => title.to_owned(),
+    };
+    let titles =
+        (x.is_some() || y.is_some()).then(|| (in_unit(&chart.x.1, &x), in_unit(&chart.y, &y)));
     Chart { physical: titles, ..chart }
 }
 
@@ -162,7 +165,7 @@ fn units(laboratory: &Laboratory, tables: &[&Table]) -> Units {
     Units {
         columns: columns.collect(),
         length: of("R0").unwrap_or_default(),
-        film: of("w0/delta_A").unwrap_or_default(),
+        film: of("w0/delta_A").unwrap_or_else(|| ("w₀/δ_A".to_owned(), 1.0)),
     }
 }
 

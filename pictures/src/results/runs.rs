@@ -2,8 +2,8 @@
 
 use super::{BRANCH, CASE, Results, Wanted};
 use crate::{
-    COLUMNS, LOOP, MAP, NAMES, PHYSICAL, PHYSICAL_LOOP, PHYSICAL_MAP, REPORT, cycle_report,
-    draw_all, draw_columns, draw_cycle, draw_map, draw_physical, report,
+    COLUMNS, LOOP, MAP, NAMES, PHYSICAL, PHYSICAL_DIAGRAM, PHYSICAL_LOOP, PHYSICAL_MAP, REPORT,
+    cycle_report, draw_all, draw_columns, draw_cycle, draw_map, draw_physical, report,
 };
 use study::case::ResolvedCase;
 use study::record::{CycleResult, Laboratory, MapResult, Table, TraceResult};
@@ -22,7 +22,7 @@ const CURVES: &str = "map.json";
 /// Names of the files that a trace may leave.
 pub fn trace_names() -> Vec<&'static str> {
     let own = [BRANCH, IN_UNITS, EVENTS, MODES, CASE, REPORT];
-    own.into_iter().chain(NAMES).chain(PHYSICAL).chain(COLUMNS).collect()
+    own.into_iter().chain(NAMES).chain(PHYSICAL).chain([PHYSICAL_DIAGRAM]).chain(COLUMNS).collect()
 }
 
 /// What a trace leaves: the JSON alone unless files are wanted.

@@ -33,7 +33,7 @@ pub struct TwoPlatesCase {
     /// The shell in physical units, if it was given in them.
     pub physical: Option<Box<PhysicalShell>>,
     /// The same of the films of the plates that there are.
-    pub physical_plates: [Option<PhysicalPlate>; 2],
+    pub physical_plates: [Option<Box<PhysicalPlate>>; 2],
     /// The mesh of either half.
     pub mesh: MeshCase,
 }
@@ -314,9 +314,11 @@ impl PlateUnits<'_> {
 }
 
 /// The plates, and what is physical of them.
-fn separated(plates: [Option<Plate>; 2]) -> ([Option<PlateCase>; 2], [Option<PhysicalPlate>; 2]) {
+fn separated(
+    plates: [Option<Plate>; 2],
+) -> ([Option<PlateCase>; 2], [Option<Box<PhysicalPlate>>; 2]) {
     let [top, bottom] = plates.map(|plate| match plate {
-        Some((plate, given)) => (Some(plate), given),
+        Some((plate, given)) => (Some(plate), given.map(Box::new)),
         None => (None, None),
     });
     ([top.0, bottom.0], [top.1, bottom.1])
