@@ -125,35 +125,6 @@ mod tests {
     use study::run::run_trace;
 
     #[test]
-    fn a_ring_load_and_two_plates_have_axes_of_their_laboratory() {
-        let shell = "[shell]\nlaw = \"hooke\"\n[physical]\nradius = \"1.5 um\"\nyoung = \"2.1 GPa\"\n\
-                     thickness = \"25 nm\"\n";
-        let ring = format!(
-            "problem = \"ring-load\"\n{shell}[mesh]\nelements = 40\n[path]\nstart = 4.5\nend = 6.0\n"
-        );
-        let film = "adhesion = \"50 mN/m\"\nfilm = \"50 nm\"\n";
-        let plates = format!(
-            "problem = \"two-plates\"\n{shell}pressure = \"1 bar\"\n[plate.top]\n{film}[plate.bottom]\n{film}\
-             [mesh]\nelements = 24\n[stability]\nscan = \"axisymmetric\"\n[path]\nstart = 1.1\nend = 1.02\n"
-        );
-        for (text, names, words) in [
-            (ring, &[PHYSICAL_DIAGRAM][..], &["contact angle α (degrees)", "force F [uN]"][..]),
-            (plates, &PHYSICAL[1..3], &["plate distance z₀ [nm]", "force F ["]),
-        ] {
-            let case = study::case::load_text("a", "a", &text, &[], &study::case::catalogue());
-            let case = case.unwrap().case;
-            let result = run_trace(&case, &mut |_| ControlFlow::Continue(())).unwrap();
-            let files = draw_physical(&case, &result).unwrap();
-            let found: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-            assert!(names.iter().all(|name| found.contains(name)), "{found:?}");
-            let svg = String::from_utf8(files[usize::from(found.len() == 3)].1.clone()).unwrap();
-            let words: Vec<String> = words.iter().map(|word| word.replace("uN", "µN")).collect();
-            assert!(words.iter().all(|word| svg.contains(word)), "{svg}");
-            assert!(svg.contains("R₀ = 1.5 µm"), "{svg}");
-        }
-    }
-
-    #[test]
     fn a_physical_case_has_axes_of_its_laboratory() {
         let keys = ["mesh.elements=40", "path.end=1.0", "stability.scan=axisymmetric"];
         let case = load("polymer".as_ref(), &keys.map(Override::new), &[]).unwrap().case;

@@ -228,31 +228,6 @@ impl<'a> Resolver<'a> {
         (problem, path)
     }
 
-    /// Whether a case has its parameters in `[physical]`; complains unless it has one of the two tables.
-    pub(super) fn is_physical(
-        &self,
-        dimensionless: Section<'_>,
-        physical: Section<'_>,
-    ) -> Option<bool> {
-        match (dimensionless.exists(), physical.exists()) {
-            (true, false) => Some(false),
-            (false, true) => Some(true),
-            (true, true) => {
-                let why = "the case has both [dimensionless] and [physical]; keep one of them";
-                let place = dimensionless.origin.max(physical.origin);
-                let name =
-                    if place == physical.origin { "physical" } else { "dimensionless" }.to_string();
-                self.reader.push(place, name, None, Complaint::Conflict(why.to_string()));
-                None
-            }
-            (false, false) => {
-                let hint = "give the parameters in a table [dimensionless] or [physical]";
-                self.reader.missing(self.root, "dimensionless", hint);
-                None
-            }
-        }
-    }
-
     /// The table `[path]` of a contact case.
     pub(super) fn contact_path_table(&self) -> Section<'a> {
         self.table("path", CONTACT_PATH)
