@@ -1,8 +1,9 @@
 //! Periodic orbits beside AUTO-07p: van der Pol, Lorenz and `ppp`, from a Hopf point to a value of the parameter.
 //!
 //! `cargo bench -p arclen-continuation --bench orbits` prints points, intervals, the last period and the least time
-//! of some runs in milliseconds: with the errors of every point, and without them, as AUTO works. `benches/auto` has the
-//! same runs for AUTO. A word after `--` chooses the problems that begin with it.
+//! of some runs in milliseconds: with errors at every point, the same with the longest step that AUTO is given, and
+//! without errors, as AUTO works. `benches/auto` has the same runs for AUTO. A word after `--` chooses the problems
+//! that begin with it.
 #![allow(clippy::print_stdout, clippy::expect_used)]
 
 use continuation::cycles::{CycleSettings, SmallCycle, trace};
@@ -79,7 +80,7 @@ const fn parameter(name: &'static str, scale: f64) -> [Parameter; 1] {
 fn run<const N: usize>(
     (name, system): (&str, &System<N>),
     (start, from, to): ([f64; N], f64, f64),
-    (hopf, end): (usize, f64),
+    (hopf, end, longest): (usize, f64, f64),
     repeats: u32,
 ) {
     if std::env::args().skip(1).any(|only| !only.starts_with('-') && !name.starts_with(&only)) {
@@ -91,8 +92,9 @@ fn run<const N: usize>(
         Tracer::new(system, parameter, &start, &[from], settings).expect("a start").run_quietly();
     let hopf = equilibria.events_of(&EventKind::Hopf).nth(hopf).expect("a Hopf point");
     let settings = Settings { target: Some(end), ..Settings::default() };
-    for check in [true, false] {
+    for (check, max_step) in [(true, None), (true, Some(longest)), (false, None)] {
         let cycles = CycleSettings { check, ..CycleSettings::default() };
+        let settings = Settings { max_step, ..settings.clone() };
         let once = || {
             let small = SmallCycle::at_hopf(system, &equilibria, hopf, &cycles).expect("a cycle");
             let settings = Settings { increasing: Some(small.increasing), ..settings.clone() };
@@ -111,8 +113,8 @@ fn run<const N: usize>(
         let intervals = branch.cycles.iter().map(|c| c.cycle.mesh.len() - 1);
         let (most, sum) = (intervals.clone().max().unwrap_or(0), intervals.sum::<usize>());
         println!(
-            "{name:16} check {check:5}  {best:8.2} ms  {:4} points, {:4} intervals at most, {:3} on average, \
-             {:5} assemblies, {} to {parameter} = {:.9}, period {:.12}",
+            "{name:16} check {check:5}, longest step {max_step:?}: {best:8.2} ms  {:4} points, {:4} intervals at \
+             most, {:3} on average, {:5} assemblies, {} to {parameter} = {:.9}, period {:.12}",
             branch.cycles.len(),
             most,
             sum / branch.cycles.len(),
@@ -163,14 +165,14 @@ fn main() {
         rates: |[v, w], p| [v - v * v * v / 3.0 - w + p, 0.08 * (v + 0.7 - 0.8 * w)],
         slopes: |[v, _], _| ([[1.0 - v * v, -1.0], [0.08, -0.064]], [1.0, 0.0]),
     };
-    run(("FitzHugh-Nagumo", &fitzhugh_nagumo), ([-1.2, -0.62], 0.0, 2.0), (0, 1.2), 3);
-    run(("van der Pol, 5", &van_der_pol), ([0.0; 2], -1.0, 1.0), (0, 5.0), 20);
-    run(("van der Pol, 100", &van_der_pol), ([0.0; 2], -1.0, 1.0), (0, 100.0), 3);
+    run(("FitzHugh-Nagumo", &fitzhugh_nagumo), ([-1.2, -0.62], 0.0, 2.0), (0, 1.2, 0.5), 3);
+    run(("van der Pol, 5", &van_der_pol), ([0.0; 2], -1.0, 1.0), (0, 5.0, 1.0), 20);
+    run(("van der Pol, 100", &van_der_pol), ([0.0; 2], -1.0, 1.0), (0, 100.0, 50.0), 3);
     let x = (8.0_f64 / 3.0 * 19.0).sqrt();
-    run(("Lorenz, 15", &lorenz), ([x, x, 19.0], 20.0, 30.0), (0, 15.0), 20);
+    run(("Lorenz, 15", &lorenz), ([x, x, 19.0], 20.0, 30.0), (0, 15.0, 1.0), 20);
     // prey and the first predator alone
     let b = 0.3_f64;
     let a = 1.0 - 3.0 * b;
     let p = (3.0 * a - 0.25) * b / (1.0 - (-5.0 * b).exp());
-    run(("ppp", &ppp), ([a, b, 0.0], p, 0.35), (0, 0.25), 20);
+    run(("ppp", &ppp), ([a, b, 0.0], p, 0.35), (0, 0.25, 0.5), 20);
 }

@@ -59,7 +59,8 @@
 //!
 //! One multiplier is 1. How far the computed one is from it is reported
 //! ([`CyclePoint::trivial_error`]), and is part of the error of all others; the other part is by how much
-//! each changes when all intervals are halved and the cycle is solved again, one and a half times. A count of
+//! each changes when all intervals are halved and the cycle is solved again, one and a half times.
+//! Between two such points on one mesh whose errors agree, errors are twice the larger ones. A count of
 //! unstable multipliers is [certified](CyclePoint::certified) where the trivial one is identified and no other is
 //! within twice its error of the unit circle. These errors are estimates, not bounds that were proven.
 //! Where the trivial multiplier is off by more than 0.05 the mesh does not resolve the orbit, and no error is given.
@@ -109,6 +110,7 @@
 //!   13 (1992) 742-764.
 
 mod basis;
+mod between;
 mod birth;
 mod block;
 mod collocation;

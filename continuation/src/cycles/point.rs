@@ -28,8 +28,8 @@ pub struct CyclePoint {
     /// have at least as much; `None` without multipliers.
     pub trivial_error: Option<f64>,
     /// Estimated relative error of period and states at the mesh points, from the solution with every
-    /// interval halved; `None` where it was not sought or not found, and where the trivial multiplier is
-    /// not identified: the mesh is too coarse for its errors to be estimated.
+    /// interval halved, its own or those of two neighbours that agree; `None` where it was not sought or not found, and
+    /// where the trivial multiplier is not identified: the mesh is too coarse for its errors to be estimated.
     pub error: Option<f64>,
     /// The same, of the period alone.
     pub period_error: Option<f64>,
@@ -60,42 +60,54 @@ impl CyclePoint {
         which: ParamId,
     ) -> Self {
         let cycle = equations.cycle(x, p);
-        let mut multipliers = equations.multipliers(x, p).unwrap_or_default();
+        let multipliers = equations.multipliers(x, p).unwrap_or_default();
         let trivial = trivial(&multipliers);
         let trivial_error = trivial.map(|t| multipliers[t].distance(&Multiplier::ONE));
-        let (mut error, mut period_error, mut parameter_error) = (None, None, None);
-        // halving says nothing of an orbit that neither mesh resolves
-        let resolved = trivial_error.is_some_and(|off| off <= UNKNOWN);
-        if let Some(finer) = finer.filter(|_| resolved) {
-            let period = SAFETY * (finer.period / cycle.period - 1.0).abs();
-            let (n, m) = (equations.n, equations.basis.degree);
-            let states = (0..equations.intervals() * n).map(|i| {
-                let (j, k) = (i / n, i % n);
-                (x[j * m * n + k] - finer.mesh_values[i]).abs()
-            });
-            let states = SAFETY * states.fold(0.0, f64::max) / cycle.amplitude();
-            error = Some(period.max(states));
-            period_error = Some(period);
-            parameter_error = Some(SAFETY * (finer.state.p - p[which.0]).abs());
-            assign_errors(&mut multipliers, &finer.multipliers, trivial_error.unwrap_or(f64::NAN));
-        }
         let mut point = CyclePoint {
             cycle,
             multipliers,
             trivial,
             trivial_error,
-            error,
-            period_error,
-            parameter_error,
+            error: None,
+            period_error: None,
+            parameter_error: None,
             unstable: None,
             certified: false,
         };
-        point.judge();
+        point.estimate(equations, x, finer, which);
         point
     }
 
+    /// Errors from the solution with every interval halved, and the count that they allow.
+    pub(super) fn estimate(
+        &mut self,
+        equations: &CycleProblem<'_>,
+        x: &[f64],
+        finer: Option<&Finer>,
+        which: ParamId,
+    ) {
+        // halving says nothing of an orbit that neither mesh resolves
+        let resolved = self.trivial_error.is_some_and(|off| off <= UNKNOWN);
+        if let Some(finer) = finer.filter(|_| resolved) {
+            let period = SAFETY * (finer.period / self.cycle.period - 1.0).abs();
+            let (n, m) = (equations.n, equations.basis.degree);
+            let states = (0..equations.intervals() * n).map(|i| {
+                let (j, k) = (i / n, i % n);
+                (x[j * m * n + k] - finer.mesh_values[i]).abs()
+            });
+            let states = SAFETY * states.fold(0.0, f64::max) / self.cycle.amplitude();
+            self.error = Some(period.max(states));
+            self.period_error = Some(period);
+            let p = self.cycle.parameters[which.0];
+            self.parameter_error = Some(SAFETY * (finer.state.p - p).abs());
+            let trivial = self.trivial_error.unwrap_or(f64::NAN);
+            assign_errors(&mut self.multipliers, &finer.multipliers, trivial);
+        }
+        self.judge();
+    }
+
     /// Counts unstable multipliers.
-    fn judge(&mut self) {
+    pub(super) fn judge(&mut self) {
         let (Some(trivial), Some(off)) = (self.trivial, self.trivial_error) else { return };
         if off.is_nan() || off > UNKNOWN {
             return;

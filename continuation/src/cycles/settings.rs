@@ -28,7 +28,8 @@ pub struct CycleSettings {
     /// The trace ends with [`PeriodUnbounded`](crate::StopReason::PeriodUnbounded) where the period is so
     /// many times the shortest of the branch while the parameter has come to rest.
     pub period_growth: f64,
-    /// Whether the errors of every point are estimated by solving it again with every interval halved.
+    /// Whether the errors of every point are estimated, by solving it, or its neighbours on the same mesh if these
+    /// agree, again with every interval halved.
     /// Without it the only error that is known is that of the trivial multiplier, and no count of
     /// multipliers is certified.
     pub check: bool,

@@ -1,5 +1,6 @@
 //! Branches of cycles: the tracer on one mesh after the other.
 
+use super::between::Between;
 use super::collocation::{CycleProblem, DOUBLING, PERIOD, TORUS};
 use super::cycle::{Cycle, CycleError};
 use super::doubling::add_forms;
@@ -91,6 +92,7 @@ pub(crate) fn trace_of(
         cycles: Vec::new(),
         halved: None,
         moved: Vec::new(),
+        between: Between::default(),
         events: Vec::new(),
         event_errors: Vec::new(),
         doubts: Vec::new(),
@@ -166,7 +168,9 @@ pub(super) struct Run<'a, 's> {
     /// For solving the points again.
     halved: Option<Halved<'a>>,
     /// What halving the intervals moves at each point, in the metric.
-    moved: Vec<Option<f64>>,
+    pub(super) moved: Vec<Option<f64>>,
+    /// Points that have no errors yet.
+    pub(super) between: Between,
     events: Vec<Event>,
     event_errors: Vec<Option<f64>>,
     doubts: Vec<Doubt>,
@@ -205,8 +209,10 @@ impl<'a> Run<'a, '_> {
                 ended = Some(stop);
                 break;
             }
-            self.record(equations, point, event, start);
             count += 1;
+            let due =
+                count >= self.cycle_settings.adapt_every || equations.alignment(&point.u) < ALIGNED;
+            self.record(equations, point, event, start, due);
             ended = self.unbounded().or_else(|| self.closed());
             if ended.is_none() && self.points.len() >= self.settings.max_points {
                 let detail = "the largest number of points was reached".to_owned();
@@ -225,8 +231,6 @@ impl<'a> Run<'a, '_> {
                 break;
             }
             let last = &self.points[self.points.len() - 1];
-            let due =
-                count >= self.cycle_settings.adapt_every || equations.alignment(&last.u) < ALIGNED;
             if due && last.event.is_none() && tracer.stopped().is_none() {
                 let baton = tracer.baton(self.range);
                 if baton.at.u == last.u {
@@ -239,6 +243,7 @@ impl<'a> Run<'a, '_> {
                 }
             }
         }
+        self.settle(equations, start);
         self.base_s = self.points.last().map_or(0.0, |point| point.s);
         let finished = tracer.into_branch(Vec::new());
         self.doubts.extend(finished.doubts);
@@ -291,24 +296,33 @@ impl<'a> Run<'a, '_> {
         Some(Box::new(Restart { next: (next, baton), left }))
     }
 
-    /// Adds a point with all that is known of it, and its event.
+    /// The solution with every interval halved, if errors are asked for.
+    pub(super) fn finer(
+        &mut self,
+        equations: &CycleProblem<'a>,
+        at: (&[f64], &[f64], f64),
+        across: bool,
+    ) -> Option<Finer> {
+        let check = self.cycle_settings.check;
+        check.then(|| finer(&mut self.halved, equations, self.which, at, self.range, across))?
+    }
+
+    /// Adds a point with all that is known of it, and its event. Its errors may wait for those of later points
+    /// if they are not `due`.
     fn record(
         &mut self,
         equations: &CycleProblem<'a>,
         mut point: Point,
         event: Option<Event>,
         start: &[f64],
+        due: bool,
     ) {
         let mut p = start.to_vec();
         p[self.which.0] = point.p;
         let kind = event.as_ref().and_then(|event| kind(&event.kind));
-        let across = kind.is_some();
+        let solved = due || event.is_some() || self.between.is_full();
         let at = (&point.u[..], &p[..], point.dp_ds);
-        let fine = if self.cycle_settings.check {
-            finer(&mut self.halved, equations, self.which, at, self.range, across)
-        } else {
-            None
-        };
+        let fine = if solved { self.finer(equations, at, kind.is_some()) } else { None };
         let cycle = CyclePoint::of(equations, &point.u, &p, fine.as_ref(), self.which);
         let fine = fine.filter(|_| cycle.error.is_some());
         (point.unstable, point.certified) = (cycle.unstable, cycle.certified);
@@ -326,6 +340,9 @@ impl<'a> Run<'a, '_> {
         self.moved.push(fine.map(|fine| fine.moved));
         self.points.push(point);
         self.cycles.push(cycle);
+        if self.cycle_settings.check {
+            self.note(equations, start, solved);
+        }
     }
 
     fn record_event(

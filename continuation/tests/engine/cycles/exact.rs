@@ -175,6 +175,40 @@ fn coarse_meshes_claim_no_more_than_they_know() {
     assert!(points > 2500 && certified > 2000, "{certified} of {points}");
 }
 
+/// Most points take their errors from those on both sides: they hold where the period varies along the branch, too.
+#[test]
+fn errors_between_points_hold_while_the_period_varies() {
+    let problem = van_der_pol();
+    let mut random = Random(61);
+    let mut points = 0;
+    for round in 0..12 {
+        let (from, to) = (1.0 + 0.5 * random.next(), 2.8 + random.next());
+        let settings = CycleSettings {
+            degree: 2 + round % 4,
+            intervals: 20 + 2 * round,
+            max_intervals: 40 + 4 * round,
+            ..CycleSettings::default()
+        };
+        let guess = |t: f64, u: &mut [f64]| (u[0], u[1]) = (2.0 * t.cos(), -2.0 * t.sin());
+        let period = 6.3 + 0.4 * from * from;
+        let start = Cycle::near(&problem, &[from], period, guess, &settings).unwrap();
+        let to = Settings { target: Some(to), max_points: 14, ..Settings::default() };
+        let observer = &mut |_: &Progress| ControlFlow::Continue(());
+        let branch = trace(&problem, "mu", &start, &to, &settings, &[], observer).unwrap();
+        let fine = CycleSettings { degree: 6, intervals: 120, ..CycleSettings::default() };
+        for point in &branch.cycles {
+            let Some(error) = point.period_error else { continue };
+            let (cycle, mu) = (&point.cycle, point.cycle.parameters[0]);
+            let orbit = |t: f64, u: &mut [f64]| u.copy_from_slice(&cycle.state(t));
+            let truth = Cycle::near(&problem, &[mu], cycle.period, orbit, &fine).unwrap();
+            points += 1;
+            let off = (cycle.period / truth.period - 1.0).abs();
+            assert!(off <= error + 1e-12, "{round}, mu {mu}: off {off:e}, said {error:e}");
+        }
+    }
+    assert!(points > 120, "{points}");
+}
+
 /// The same of an orbit that is fast and slow in turn, against itself on a fine mesh.
 #[test]
 fn coarse_meshes_of_relaxation_oscillations() {
