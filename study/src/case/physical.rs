@@ -97,7 +97,7 @@ pub struct PhysicalShell {
 }
 
 impl PhysicalShell {
-    /// The numbers alone, in SI units, beside a film of this adhesion [N/m] and length [m].
+    /// The numbers alone, in SI units, beside a film of this adhesion in N/m and length in m.
     pub fn numbers(&self, adhesion: f64, film: f64) -> Physical {
         Physical {
             radius: self.radius.si,

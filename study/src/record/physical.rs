@@ -88,9 +88,18 @@ const RING_FORCE: &str = "2e-6 pi chi R0";
 pub type Unit = (&'static str, f64);
 
 const LENGTHS: [Unit; 3] = [("nm", 1e-9), ("um", 1e-6), ("mm", 1e-3)];
-const FORCES: [Unit; 4] = [("pN", 1e-12), ("nN", 1e-9), ("uN", 1e-6), ("mN", 1e-3)];
+const FORCES: [Unit; 6] =
+    [("pN", 1e-12), ("nN", 1e-9), ("uN", 1e-6), ("mN", 1e-3), ("N", 1.0), ("kN", 1e3)];
 const PRESSURES: [Unit; 4] = [("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9)];
-const ENERGIES: [Unit; 4] = [("aJ", 1e-18), ("fJ", 1e-15), ("pJ", 1e-12), ("nJ", 1e-9)];
+const ENERGIES: [Unit; 7] = [
+    ("aJ", 1e-18),
+    ("fJ", 1e-15),
+    ("pJ", 1e-12),
+    ("nJ", 1e-9),
+    ("uJ", 1e-6),
+    ("mJ", 1e-3),
+    ("J", 1.0),
+];
 const TENSIONS: [Unit; 3] = [("uN/m", 1e-6), ("mN/m", 1e-3), ("N/m", 1.0)];
 const VOLUMES: [Unit; 3] = [("nm^3", 1e-27), ("um^3", 1e-18), ("mm^3", 1e-9)];
 
