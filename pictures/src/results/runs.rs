@@ -89,7 +89,7 @@ pub fn map(case: &ResolvedCase, result: &MapResult, wanted: Option<Wanted>) -> R
     let laboratory = Laboratory::of(case, &tables);
     for curve in &result.curves {
         made.attempt(curve.csv.clone(), branch_csv(&curve.table));
-        if let Some(laboratory) = &laboratory {
+        if let Some(laboratory) = laboratory.as_ref().filter(|one| one.converts(&curve.table)) {
             let name = curve.csv.replace(".csv", "-physical.csv");
             made.attempt(name, branch_csv(&laboratory.table(case, &curve.table)));
         }

@@ -2,7 +2,7 @@
 //! same for people.
 
 use super::number::rounded;
-use super::physical::{Laboratory, in_unit, spoken};
+use super::physical::{BENDING, Laboratory, in_unit, spoken};
 use super::result::Table;
 use super::summary::{aligned, count};
 use crate::case::ResolvedCase;
@@ -178,7 +178,7 @@ impl Serialize for PointOf<'_> {
             map.serialize_entry("observables", &observables)?;
         }
         if let Some((laboratory, table)) = laboratory {
-            let known = numbers(point, result).into_iter();
+            let known = numbers(point, result, laboratory).into_iter();
             let physical: serde_json::Map<String, serde_json::Value> = known
                 .filter_map(|(name, value)| {
                     let (unit, factor) = laboratory.convert(table.unit(name))?;
@@ -258,12 +258,20 @@ fn laboratory<'r>(case: &ResolvedCase, result: &'r MapResult) -> Option<(Laborat
     Some((Laboratory::of(case, &tables)?, *tables.first()?))
 }
 
-/// Both parameters and the force of a special point, with their names.
-fn numbers<'r>(point: &MapPoint, result: &'r MapResult) -> [(&'r str, Option<f64>); 3] {
+/// Both parameters and the force of a special point, in the case's units, with their names.
+fn numbers<'r>(
+    point: &MapPoint,
+    result: &'r MapResult,
+    laboratory: &Laboratory,
+) -> [(&'r str, Option<f64>); 3] {
+    let unit = match &result.key[..] {
+        BENDING => laboratory.scales.force_unit_with(point.second),
+        _ => 1.0,
+    };
     [
         (&result.parameter, Some(point.first)),
         (&result.key, Some(point.second)),
-        ("force", point.force()),
+        ("force", point.force().map(|force| unit * force)),
     ]
 }
 
@@ -273,7 +281,7 @@ fn physically(case: &ResolvedCase, result: &MapResult) -> String {
     let unit = |name: &str| laboratory.convert(table.unit(name));
     let mut rows = vec![vec!["in physical units".to_owned()]];
     for point in &result.points {
-        let known = numbers(point, result);
+        let known = numbers(point, result, &laboratory);
         let known: Vec<_> = known
             .into_iter()
             .filter_map(|(name, value)| Some((name, unit(name)?, value?)))

@@ -75,12 +75,22 @@ impl Scales {
         }
     }
 
+    /// By how much the unit of forces between plates, `sqrt(chi k_b)`, exceeds that of the case where this is the
+    /// bending group `k_b/(chi R0^2)`: along curves over it every point has its own.
+    pub(super) fn force_unit_with(&self, bending: f64) -> f64 {
+        bending.sqrt() * self.tension * self.length / self.force
+    }
+
     /// `2e-6 pi chi R0`, the unit of forces under a ring load, in N.
     fn ring_force(&self) -> f64 {
         2e-6 * PI * self.tension * self.length
     }
 }
 
+/// The unit of forces between plates, as columns name it.
+pub(super) const FORCE: &str = "sqrt(chi k_b)";
+/// The column of curves over the bending group.
+pub(super) const BENDING: &str = "bending";
 /// The unit of forces under a ring load, as columns name it.
 const RING_FORCE: &str = "2e-6 pi chi R0";
 
@@ -149,10 +159,7 @@ impl PhysicalUnits {
             volume: choose(&VOLUMES, scales.length.powi(3) * largest("R0^3")),
             force: choose(
                 &FORCES,
-                f64::max(
-                    scales.force * largest("sqrt(chi k_b)"),
-                    scales.ring_force() * largest(RING_FORCE),
-                ),
+                f64::max(scales.force * largest(FORCE), scales.ring_force() * largest(RING_FORCE)),
             ),
             pressure: choose(&PRESSURES, scales.pressure * largest("chi/R0")),
             tension: choose(&TENSIONS, scales.tension * largest("chi")),
@@ -166,7 +173,7 @@ impl PhysicalUnits {
         let ((name, size), scale) = match unit {
             "R0" => (self.length, scales.length),
             "R0^3" => (self.volume, scales.length.powi(3)),
-            "sqrt(chi k_b)" => (self.force, scales.force),
+            FORCE => (self.force, scales.force),
             "chi/R0" => (self.pressure, scales.pressure),
             "chi R0^2" => (self.energy, scales.energy),
             "chi" => (self.tension, scales.tension),
@@ -206,6 +213,11 @@ impl Laboratory {
         self.units.of(&self.scales, unit)
     }
 
+    /// Whether any column of a table has a unit here.
+    pub fn converts(&self, table: &Table) -> bool {
+        table.columns().iter().any(|name| self.convert(table.unit(name)).is_some())
+    }
+
     /// A table in these units: its columns of names and numbers of points, then every column that has a
     /// unit, with its new unit at the end of its name (`z0_nm`, `force_nN`), then `event`.
     pub fn table(&self, case: &ResolvedCase, table: &Table) -> Table {
@@ -218,7 +230,14 @@ impl Laboratory {
         for name in columns {
             let Some((unit, factor)) = self.convert(table.unit(name)) else { continue };
             titles.push(in_unit(name.trim_end_matches("_over_h"), unit));
-            numbers.push(table.numbers(name).into_iter().map(|value| factor * value).collect());
+            let mut values = table.numbers(name);
+            values.iter_mut().for_each(|value| *value *= factor);
+            if table.unit(name) == FORCE && columns.iter().any(|own| own == BENDING) {
+                let own = table.numbers(BENDING).into_iter();
+                let units = own.map(|bending| self.scales.force_unit_with(bending));
+                values.iter_mut().zip(units).for_each(|(value, unit)| *value *= unit);
+            }
+            numbers.push(values);
         }
         for (name, values) in of_the_laboratory(case, &self.scales, table) {
             let (unit, size) = self.units.length;

@@ -3,7 +3,7 @@
 use super::{read, says};
 use crate::case::{ProblemCase, ResolvedCase, catalogue, load_text};
 use crate::record::{Scales, physical_table};
-use crate::run::run_trace;
+use crate::run::{run_map, run_trace};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -192,6 +192,83 @@ fn ends_of_a_path_between_plates_may_have_units() {
     close(case.path.end, 1.08);
     assert!(case.to_toml().contains("start = \"1.65 um\"") && !case.to_toml().contains("quantity"));
     assert_eq!(read(&case.to_toml()), case);
+}
+
+/// Either plate's film and what the curves have are in the laboratory's units.
+#[test]
+fn maps_between_plates_have_their_units() {
+    let numbers = [1.5, 2.1, 25.0, 101.0, 50.0, 50.0, 50.0, 50.0];
+    let text = plates(numbers, Some(1.2), ["1.15", "0.8"]).replace("max_points = 12\n", "");
+    let case = read(&text);
+    for (key, column, unit) in [
+        ("plate.top.film", "film_top", "nm"),
+        ("plate.bottom.adhesion", "adhesion_bottom", "mN_per_m"),
+    ] {
+        let map = run_map(&case, key, &mut |_| ControlFlow::Continue(())).unwrap();
+        let own = &map.curves.first().unwrap().table;
+        let scales = Scales::of(&case).unwrap();
+        let (factor, name) = match unit {
+            "nm" => (scales.length * 1e9, format!("{column}_nm")),
+            _ => (scales.tension * 1e3, format!("{column}_mN_per_m")),
+        };
+        let table = physical_table(&case, own).unwrap();
+        let columns = table.columns();
+        assert!(columns.contains(&"force_nN".to_owned()), "{columns:?}");
+        assert!(columns.iter().any(|one| one.starts_with("base_")), "{columns:?}");
+        let values = table.numbers(&name);
+        assert_eq!(values.len(), own.rows().len(), "{columns:?}");
+        for (value, plain) in values.into_iter().zip(own.numbers(column)) {
+            close(value, plain * factor);
+        }
+    }
+}
+
+/// Along a curve over the bending modulus the unit of the force is that of each point: a wall of that thickness has its fold
+/// at the force that the map has there.
+#[test]
+fn forces_of_maps_over_bending_are_those_of_such_walls() {
+    let wall = |thickness: f64| {
+        format!(
+            "problem = \"contact\"\n[shell]\nlaw = \"hooke\"\npoisson = 0.5\n[physical]\nradius = \"1.5 um\"\n\
+             chi = \"52.5 N/m\"\nbending = \"{:?} N m\"\npressure = \"101 kPa\"\nadhesion = \"50 mN/m\"\n\
+             film = \"50 nm\"\n[mesh]\nelements = 60\n[path]\nstart = 1.15\nend = 0.65\n",
+            52.5 * (thickness * 1e-9).powi(2) / 9.0
+        )
+    };
+    let case = read(&wall(25.0));
+    let map = run_map(&case, "bending", &mut |_| ControlFlow::Continue(())).unwrap();
+    let scales = Scales::of(&case).unwrap();
+    let mut seen = 0;
+    for curve in &map.curves {
+        let own = curve.table.numbers("bending");
+        let (z0, plain) = (curve.table.numbers("z0"), curve.table.numbers("force"));
+        let physical = physical_table(&case, &curve.table).unwrap();
+        let column = physical.columns().iter().position(|name| name.starts_with("force_")).unwrap();
+        let name = physical.columns()[column].clone();
+        let size = if name == "force_nN" { 1e-9 } else { 1e-6 };
+        let forces = physical.numbers(&name);
+        for k in (0..own.len()).step_by(40) {
+            // k_b in N m, and the force of a shell that has it
+            let bending = own[k] * scales.energy;
+            close(forces[k] * size, plain[k] * (scales.tension * bending).sqrt());
+            let thickness = (9.0 * bending / 52.5).sqrt() * 1e9;
+            let trace =
+                run_trace(&read(&wall(thickness)), &mut |_| ControlFlow::Continue(())).unwrap();
+            let folds = trace.events.iter().filter(|event| event.kind == "fold");
+            for fold in
+                folds.filter(|fold| fold.parameter.is_some_and(|at| (at - z0[k]).abs() < 1e-6))
+            {
+                let si = fold.force.unwrap() * (52.5 * bending).sqrt();
+                assert!(
+                    (forces[k] * size - si).abs() < 1e-4 * si.abs(),
+                    "{:e} {si:e}",
+                    forces[k] * size
+                );
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen >= 2, "{seen}");
 }
 
 #[test]

@@ -206,7 +206,7 @@ fn plain<P: Problem>(
     let titles = ["point", parameter, key].into_iter().chain(names.iter().copied());
     let titles: Vec<&str> = titles.chain(["unstable", "event"]).collect();
     let mut table = Table::with_columns(&titles);
-    if matches!(task.case.problem, ProblemCase::Contact(_)) {
+    if matches!(task.case.problem, ProblemCase::Contact(_) | ProblemCase::TwoPlates(_)) {
         table = table.described(PLATES);
     }
     for (index, point) in branch.points.iter().enumerate() {
