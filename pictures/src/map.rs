@@ -76,7 +76,10 @@ fn physical(case: &ResolvedCase, result: &MapResult) -> Option<(String, String, 
     };
     let (unit, x) = laboratory.convert(table.unit(&result.key))?;
     let (length, y) = laboratory.convert("R0")?;
-    let first = format!("plate distance z₀ [{}]", spoken(length));
+    let first = match result.parameter.as_str() {
+        "base" => format!("base of the cantilever [{}]", spoken(length)),
+        _ => format!("plate distance z₀ [{}]", spoken(length)),
+    };
     Some((format!("{words} [{}]", spoken(unit)), first, (x, y)))
 }
 
