@@ -69,24 +69,38 @@ fn the_cusp_of_fig16_in_plate_distance_and_adhesion() {
 }
 
 /// The finer the mesh, the more rounding does a curve of folds suffer, most of all at the cusp: corrections end at 1e-8 or
-/// so, far above the tolerance.
+/// so, far above the tolerance, and slopes of tests are noise. From either fold and at steps of any length it is the same
+/// cusp within the errors, at a like cost.
 #[test]
 fn rounding_does_not_end_fold_curves_on_fine_meshes() {
-    let heights = [100, 300, 400, 600].map(|elements| {
+    for elements in [100, 300, 400, 600] {
         let problem = shell(elements);
         let base = base(&problem);
-        let fold = base.events_of(&EventKind::Fold).next().unwrap();
-        let curve = FoldCurve::at(&problem, &base, fold, "adhesion").unwrap();
-        let found = follow(&curve, None);
-        let reasons = [found.first_end.reason, found.branch.stopped.reason];
-        assert!(!reasons.contains(&StopReason::StepTooSmall), "{elements}: {reasons:?}");
-        let cusps: Vec<_> = found.branch.events_of(&EventKind::Cusp).collect();
-        assert_eq!(cusps.len(), 1, "{elements}");
-        (cusps[0].p, cusps[0].error_estimate)
-    });
-    for (adhesion, error) in heights {
-        let (finest, its_error) = heights[3];
-        // and what the mesh moves
-        assert!((adhesion - finest).abs() < error + its_error + 2e-7, "{heights:?}");
+        let mut cusps = Vec::new();
+        for fold in base.events_of(&EventKind::Fold) {
+            for max_step in [None, Some(0.05), Some(0.02)] {
+                let curve = FoldCurve::at(&problem, &base, fold, "adhesion").unwrap();
+                let found = follow(&curve, max_step);
+                let what = format!("{elements} elements, steps to {max_step:?}");
+                let reasons = [found.first_end.reason, found.branch.stopped.reason];
+                assert!(reasons.contains(&StopReason::Target), "{what}: {reasons:?}");
+                assert!(reasons.contains(&StopReason::Domain), "{what}: {reasons:?}");
+                let iterations = found.branch.statistics.newton_iterations;
+                assert!(iterations < 600, "{what}: {iterations} iterations");
+                let found_here: Vec<_> = found.branch.events_of(&EventKind::Cusp).collect();
+                assert_eq!(found_here.len(), 1, "{what}");
+                let cusp = found_here[0];
+                let at = |name: &str| found.column(name).unwrap()[cusp.point];
+                cusps.push((what, [at("z0"), cusp.p], cusp.error_estimate));
+            }
+        }
+        for (what, place, error) in &cusps {
+            for (_, other, its_error) in &cusps {
+                for (a, b) in place.iter().zip(other) {
+                    let off = (a - b).abs();
+                    assert!(off <= error + its_error, "{what}: {off:e}, {error:e} {its_error:e}");
+                }
+            }
+        }
     }
 }

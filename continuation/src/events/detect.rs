@@ -302,7 +302,10 @@ impl Detector {
         match *candidate {
             Candidate::Value { observable, level, .. } => {
                 let cubic = self.cubic(a, b, observable, level, h);
-                if !final_say && self.unresolved(&cubic, observable, cubic.hides_zeros()) {
+                if !final_say
+                    && cubic.may_vanish()
+                    && self.unresolved(&cubic, observable, cubic.hides_zeros())
+                {
                     return Err(Refusal::Unresolved);
                 }
                 let noise = NOISE * self.magnitude[observable];
@@ -578,7 +581,7 @@ impl Detector {
 
     fn unresolved(&self, cubic: &Cubic, k: usize, hidden: bool) -> bool {
         let [g0, g1] = cubic.g;
-        let size = (g1 - g0).abs().max(cubic.h * cubic.s[0].abs().max(cubic.s[1].abs()));
+        let size = cubic.change();
         let negligible = NEGLIGIBLE * self.magnitude[k].max(g0.abs()).max(g1.abs());
         size > negligible && (hidden || cubic.mismatch() > MAX_MISMATCH)
     }

@@ -1,5 +1,8 @@
 //! Cubic Hermite interpolation of a function from its values and slopes at both ends of a step.
 
+/// A function changes by less than this many times what its ends show.
+const MANY: f64 = 10.0;
+
 /// A cubic on `[0, h]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Cubic {
@@ -50,6 +53,20 @@ impl Cubic {
         (turn > 0.0 && turn < 1.0).then_some((s0 + 0.5 * b * turn, a))
     }
 
+    /// How much the function changes, by its values or by its slopes.
+    pub(crate) fn change(&self) -> f64 {
+        let by_slopes = self.h * self.s[0].abs().max(self.s[1].abs());
+        (self.g[1] - self.g[0]).abs().max(by_slopes)
+    }
+
+    /// Whether a function like this may have a zero inside: not one whose ends are many times as far from zero, on the same
+    /// side, as it changes, however badly its slopes are known.
+    pub(crate) fn may_vanish(&self) -> bool {
+        let [g0, g1] = self.g;
+        let nearest = if g0 * g1 > 0.0 { g0.abs().min(g1.abs()) } else { 0.0 };
+        MANY * self.change() > nearest
+    }
+
     /// Whether the cubic has two zeros inside though the ends have the same sign.
     pub(crate) fn hides_zeros(&self) -> bool {
         let [g0, g1] = self.g;
@@ -93,6 +110,14 @@ mod tests {
         assert!(c.hides_zeros() && !c.hides_extrema());
         let d = cubic(|x| (x - 0.5) * (x - 0.5) + 0.1, |x| 2.0 * x - 1.0, 1.0);
         assert!(!d.hides_zeros());
+    }
+
+    #[test]
+    fn far_from_zero_it_does_not_matter_what_slopes_are() {
+        let at = |level: f64| Cubic { h: 1e-3, g: [level, level + 1e-6], s: [6e-3, -2e-3] };
+        assert!(at(1e-5).may_vanish() && at(-5e-5).may_vanish());
+        assert!(!at(1e-4).may_vanish() && !at(-0.5).may_vanish());
+        assert!(Cubic { h: 1.0, g: [-1e3, 1e-9], s: [0.0; 2] }.may_vanish());
     }
 
     #[test]
