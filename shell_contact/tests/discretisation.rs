@@ -64,15 +64,14 @@ fn special_points_move_as_estimated() {
     }
 }
 
-/// The force at a given plate distance is off by twice its estimate at most, on every part of the branch; nearly
-/// everywhere by half of it at least. Beside a fold two changes nearly cancel, of which either is known to a part.
+/// The force at a given plate distance too, at every point of the branch.
 #[test]
 fn forces_change_as_estimated() {
     let of = |elements: usize| contact(elements, Law::Hooke, FIG12);
     let (problem, finer) = (of(200), of(800));
     let branch = trace(&problem, 0.7).branch;
     let mut refined = Refined::new(&problem).unwrap();
-    let (mut seen, mut too_large) = (0, 0);
+    let mut seen = 0;
     for point in branch.points.iter().filter(|point| point.event.is_none()) {
         let p = problem.parameters_at(point.p);
         let shift = refined.shift(&point.u, &p, None).unwrap().unwrap();
@@ -83,12 +82,11 @@ fn forces_change_as_estimated() {
             continue;
         }
         let force = finer.observation(&u, &p).unwrap().force;
-        let (estimate, moved) = (shift.force.unwrap(), (force - point.observables[0]).abs());
-        assert!(moved < 2.0 * estimate + 1e-9, "z0 = {}: {estimate:e}, not {moved:e}", point.p);
-        seen += 1;
-        too_large += usize::from(estimate > 2.0 * moved + 1e-9);
+        let what = format!("z0 = {}", point.p);
+        agree(&what, shift.force, (force - point.observables[0]).abs(), 1e-9);
+        seen += usize::from(shift.force.is_some());
     }
-    assert!(seen > 100 && 10 * too_large < seen, "{too_large} of {seen}");
+    assert!(seen > 100, "{seen}");
 }
 
 /// Coefficients on another mesh that interpolate nothing but are near: the spline's own values at the knots.
@@ -114,6 +112,14 @@ fn random(state: &mut u64) -> f64 {
     (*state >> 11) as f64 / (1_u64 << 53) as f64
 }
 
+/// Whether the elements resolve every state of a branch.
+fn is_resolved(problem: &ContactProblem, branch: &continuation::Branch) -> bool {
+    branch.points.iter().all(|point| {
+        let p = problem.parameters_at(point.p);
+        problem.resolution(&point.u, &p).unwrap().is_enough()
+    })
+}
+
 /// Of 803 estimates for 300 shells as these 4 are outside a factor of two, at errors below 3e-8.
 #[test]
 fn so_it_is_for_random_shells() {
@@ -133,11 +139,7 @@ fn so_it_is_for_random_shells() {
         let elements = between(60.0, 240.0) as usize;
         let problem = contact(elements, law, groups);
         let branch = trace(&problem, 0.75).branch;
-        let is_enough = |point: &continuation::Point| {
-            let p = problem.parameters_at(point.p);
-            problem.resolution(&point.u, &p).unwrap().is_enough()
-        };
-        if !branch.points.iter().all(is_enough) {
+        if !is_resolved(&problem, &branch) {
             continue;
         }
         let found = special_points(elements, law, groups, 0.75);
@@ -158,4 +160,55 @@ fn so_it_is_for_random_shells() {
         }
     }
     assert!(compared > 80 && outside <= 1, "{outside} of {compared}");
+}
+
+/// The forces of random shells too, at every seventh point and at all beside folds, but where halving moves the fold over the
+/// point; and the largest of a shell is known well. (Of 200 shells: 2175 points, none outside; the largest to 2 %.)
+#[test]
+fn the_largest_errors_of_forces_are_those_that_are_said() {
+    let mut state = 77;
+    let mut compared = 0;
+    for k in 0..60 {
+        let mut between = |low: f64, high: f64| low * (high / low).powf(random(&mut state));
+        let groups = [
+            between(3e-5, 3e-3),
+            between(1e-3, 1e-1),
+            between(2e-4, 5e-3),
+            between(0.02, 0.08),
+            if k % 3 == 0 { between(1e-3, 0.1) } else { 0.0 },
+            between(1.0, 1.4),
+        ];
+        let law = [Law::Hooke, Law::Skalak, Law::MooneyRivlin { b: 0.5 }][k % 3];
+        let elements = between(80.0, 240.0) as usize;
+        let (problem, finer) = (contact(elements, law, groups), contact(4 * elements, law, groups));
+        let branch = trace(&problem, 0.75).branch;
+        if !is_resolved(&problem, &branch) {
+            continue;
+        }
+        let folds: Vec<f64> = branch.events_of(&EventKind::Fold).map(|fold| fold.p).collect();
+        let mut refined = Refined::new(&problem).unwrap();
+        let mut found = Vec::new();
+        for (i, point) in branch.points.iter().enumerate() {
+            let beside = folds.iter().any(|fold| (fold - point.p).abs() < 1e-3);
+            if point.event.is_some() || !(beside || i % 7 == 0) {
+                continue;
+            }
+            let p = problem.parameters_at(point.p);
+            let estimate = refined.shift(&point.u, &p, None).unwrap().unwrap().force;
+            let mut u = start_on(&finer, &problem, &point.u);
+            let newton = continuation::NewtonSettings::default();
+            if continuation::newton(&finer, &mut u, &p, &newton).is_ok() {
+                let force = finer.observation(&u, &p).unwrap().force;
+                found.extend(estimate.map(|said| (said, (force - point.observables[0]).abs())));
+            }
+        }
+        for (said, off) in &found {
+            assert!(*off < 2.0 * said + 1e-9, "shell {k}: {said:e}, not {off:e}");
+        }
+        let largest = |of: fn(&(f64, f64)) -> f64| found.iter().map(of).fold(0.0, f64::max);
+        let (said, off) = (largest(|x| x.0), largest(|x| x.1));
+        assert!((said / off - 1.0).abs() < 0.1 || off < 1e-8, "shell {k}: {said:e}, not {off:e}");
+        compared += found.len();
+    }
+    assert!(compared > 400, "{compared}");
 }

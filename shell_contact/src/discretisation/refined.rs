@@ -5,6 +5,8 @@
 //! what it moves: `(Δu, Δz0)` and the force there are what halving changes. Cubic splines converge
 //! at the fourth order in `z0` and force, so that all further halvings together change 1/15 of it.
 //!
+//! At an ordinary point the state is brought back to the plate's height along the branch and by one more correction:
+//! beside a fold the changes at either end of that way nearly cancel, and to first order little is left of them.
 //! At a fold the plate's height is stationary along the branch: its change in the plane is that of the fold, to
 //! first order. So is the force at its extrema. Where along the branch either lies is more sensitive, and with it the force
 //! at a fold and the plate distance at an extremum: nothing is said of these.
@@ -13,15 +15,14 @@ use crate::contact::{ContactProblem, parameter};
 use crate::meridian::Mesh;
 use crate::params::ParameterError;
 use crate::spline::{Component, Knots};
-use continuation::linalg::{Bordered, SymmetricBand};
+use continuation::linalg::{Bordered, Matrix, SymmetricBand};
 use continuation::{EvalError, EventKind, Problem};
 
 /// All further halvings together, at the fourth order.
 const REST: f64 = 16.0 / 15.0;
 
-/// Part of what halving changes to which it is known, with something to spare: beside folds of shells on few elements the
-/// next halvings change by a seventh more or less than at the fourth order.
-const KNOWN_TO: f64 = 0.25;
+/// A second correction is no larger than this part of the first, and of the way along the branch.
+const SMALL: f64 = 0.1;
 
 /// Place of the force among the observables.
 const FORCE: usize = 0;
@@ -54,6 +55,8 @@ struct Corrected {
     z0: f64,
     force: f64,
     slope: f64,
+    /// Of the correction.
+    length: f64,
 }
 
 /// What is stationary, or given, at a place.
@@ -106,9 +109,12 @@ impl<'a> Refined<'a> {
         self.take_tangent(p)?;
         let found = self.correct(p, force)?;
         let rest = |x: f64| Some((REST * x).abs()).filter(|x| x.is_finite());
-        // to first order along the branch, back to the same force or plate distance
-        let at_same_force = rest(difference(found.z0, self.by_height * found.force / found.slope));
-        let at_same_height = rest(difference(found.force, found.slope * found.z0 / self.by_height));
+        // to first order along the branch, back to the same force
+        let at_same_force = rest(found.z0 - self.by_height * found.force / found.slope);
+        let at_same_height = match place {
+            Place::Ordinary => self.at_same_height(p, force, &found)?.and_then(rest),
+            _ => None,
+        };
         Ok(Some(match place {
             Place::Ordinary => Shift { z0: at_same_force, force: at_same_height },
             Place::Zero => Shift { z0: at_same_force, force: None },
@@ -148,6 +154,9 @@ impl<'a> Refined<'a> {
         let mut moved = [0.0];
         self.bordered.solve(&mut self.jacobian, &mut self.residual, &mut moved);
         self.u.iter_mut().zip(&self.residual).for_each(|(u, d)| *u -= d);
+        let mut along = vec![0.0; self.u.len()];
+        self.fine.metric(&self.residual, &mut along);
+        let length = along.iter().zip(&self.residual).map(|(m, d)| m * d).sum::<f64>();
         let mut p = p.to_vec();
         p[parameter::Z0.0] -= moved[0];
         self.solve_tangent();
@@ -161,7 +170,33 @@ impl<'a> Refined<'a> {
         )?;
         let there = self.fine.observation(&self.u, &p)?.force;
         let slope = slope.unwrap_or(f64::NAN);
-        Ok(Corrected { z0: -moved[0], force: there - force, slope })
+        let length = length.max(0.0).sqrt();
+        Ok(Corrected { z0: -moved[0], force: there - force, slope, length })
+    }
+
+    /// How far the force is from `force` where the plate is back at its height: along the branch, and once across it.
+    /// `None` where that correction is no small part of the way, beside a fold that halving moves as far.
+    fn at_same_height(
+        &mut self,
+        p: &[f64],
+        force: f64,
+        found: &Corrected,
+    ) -> Result<Option<f64>, EvalError> {
+        let along = -found.z0 / self.by_height;
+        self.u.iter_mut().zip(&self.tangent).for_each(|(u, t)| *u += along * t);
+        if self.assemble(p).is_err() {
+            return Ok(None);
+        }
+        self.jacobian.factor(f64::EPSILON * self.jacobian.norm());
+        self.jacobian.solve(&mut self.residual);
+        self.u.iter_mut().zip(&self.residual).for_each(|(u, d)| *u -= d);
+        self.fine.metric(&self.residual, self.bordered.row_mut(0));
+        let across = self.bordered.row(0).iter().zip(&self.residual);
+        let across = across.map(|(m, d)| m * d).sum::<f64>().max(0.0).sqrt();
+        if across.is_nan() || across > SMALL * along.abs().max(found.length) {
+            return Ok(None);
+        }
+        Ok(Some(self.fine.observation(&self.u, p)?.force - force))
     }
 
     fn assemble(&mut self, p: &[f64]) -> Result<(), EvalError> {
@@ -186,12 +221,6 @@ impl<'a> Refined<'a> {
             }
         }
     }
-}
-
-/// How far `a` and `b` are apart, at most: of numbers that nearly cancel, each is known to a part of itself.
-fn difference(a: f64, b: f64) -> f64 {
-    let shared = if a * b > 0.0 { a.abs().min(b.abs()) } else { 0.0 };
-    (a - b).abs() + KNOWN_TO * shared
 }
 
 /// Distances from knot `j` to the ones before and behind it, as the knots are continued.
