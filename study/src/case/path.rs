@@ -154,6 +154,26 @@ impl Resolver<'_> {
         let is_grip = device.is_none_or(|device| device == Device::Grip);
         let ranges = if is_grip { [CONTACT_START, POSITIVE] } else { [ANY, ANY] };
         let force = device == Some(Device::DeadLoad);
+        self.path_of(section, ranges, (quantity, force), scale)
+    }
+
+    /// The path between two plates, whose ends may be lengths with their units.
+    pub(super) fn plates_path(
+        &self,
+        ranges: [Range; 2],
+        scale: Scale,
+    ) -> Option<(PathCase, Option<PhysicalPath>)> {
+        self.path_of(self.path_table(), ranges, (PathQuantity::Parameter, false), scale)
+    }
+
+    /// A path of a quantity, and how its ends were given where that is not the bare parameter.
+    fn path_of(
+        &self,
+        section: Section<'_>,
+        ranges: [Range; 2],
+        (quantity, force): (PathQuantity, bool),
+        scale: Scale,
+    ) -> Option<(PathCase, Option<PhysicalPath>)> {
         let [start, end] = [("start", ranges[0]), ("end", ranges[1])]
             .map(|(key, range)| self.path_end(section, key, range, (quantity, force), scale));
         let path = self.path_between(
@@ -163,27 +183,6 @@ impl Resolver<'_> {
         );
         let ((_, start), (_, end)) = (start?, end?);
         let given = start.is_physical() || end.is_physical() || quantity != PathQuantity::Parameter;
-        let given = given.then_some(PhysicalPath { quantity, start, end });
-        Some((path?, given))
-    }
-
-    /// The path between two plates, whose ends may be lengths with their units.
-    pub(super) fn plates_path(
-        &self,
-        ranges: [Range; 2],
-        scale: Scale,
-    ) -> Option<(PathCase, Option<PhysicalPath>)> {
-        let section = self.path_table();
-        let quantity = PathQuantity::Parameter;
-        let [start, end] = [("start", ranges[0]), ("end", ranges[1])]
-            .map(|(key, range)| self.path_end(section, key, range, (quantity, false), scale));
-        let path = self.path_between(
-            section,
-            start.as_ref().map(|(value, _)| *value),
-            end.as_ref().map(|(value, _)| *value),
-        );
-        let ((_, start), (_, end)) = (start?, end?);
-        let given = start.is_physical() || end.is_physical();
         let given = given.then_some(PhysicalPath { quantity, start, end });
         Some((path?, given))
     }
